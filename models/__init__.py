@@ -1,0 +1,1 @@
+"""What the system is: schedule, rigid body, laws, closed loop, storage functions, simulation."""

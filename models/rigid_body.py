@@ -1,0 +1,109 @@
+"""The rigid body: exact inertia, kinematics and dynamics as CasADi expressions.
+
+Conventions, here once for the whole package: the attitude quaternion is scalar first,
+(b0, b1, b2, b3) with b0 = cos(Phi/2), unit norm, target attitude at b0 = +1; rates and torques
+are in the body frame; S(x) y = x cross y; SI units.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import Any, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+ExactMatrix = tuple[tuple[Fraction, Fraction, Fraction], ...]
+
+
+@final
+@dataclass(frozen=True)
+class RigidBody:
+    """Inertia J = J' > 0 about the centre of mass, body frame, kg m^2, exact, shape (3, 3)."""
+
+    exact_inertia: ExactMatrix
+
+    def __post_init__(self) -> None:
+        J = self.exact_inertia
+        for i in range(3):
+            for j in range(i):
+                if J[i][j] != J[j][i]:
+                    raise ValueError(
+                        f"inertia must be symmetric: entry ({i + 1},{j + 1}) is {float(J[i][j]):g}, "
+                        f"entry ({j + 1},{i + 1}) is {float(J[j][i]):g}"
+                    )
+        if not all(minor > 0 for minor in leading_minors(J)):
+            raise ValueError("inertia must be positive definite")
+
+    @classmethod
+    def from_rows(cls, rows: Sequence[Sequence[Fraction | int | float | str]]) -> RigidBody:
+        """Build from three rows; strings and fractions stay exact, floats are taken as they are."""
+        if len(rows) != 3 or any(len(row) != 3 for row in rows):
+            raise ValueError("inertia must have three rows of three numbers (kg m^2)")
+        return cls(tuple((Fraction(r[0]), Fraction(r[1]), Fraction(r[2])) for r in rows))
+
+    @cached_property
+    def inertia(self) -> Array:
+        """J as floats, (3, 3), kg m^2."""
+        return np.array([[float(x) for x in row] for row in self.exact_inertia])
+
+    @cached_property
+    def inverse_inertia(self) -> Array:
+        """J^-1 as floats, (3, 3), 1/(kg m^2), rounded from the exact inverse."""
+        J = self.exact_inertia
+        det = leading_minors(J)[2]
+        inverse = np.empty((3, 3))
+        for i in range(3):
+            for j in range(3):
+                a, b = (j + 1) % 3, (j + 2) % 3
+                c, d = (i + 1) % 3, (i + 2) % 3
+                inverse[i, j] = float((J[a][c] * J[b][d] - J[a][d] * J[b][c]) / det)
+        return inverse
+
+    @cached_property
+    def principal_inertias(self) -> Array:
+        """Eigenvalues of J, ascending, (3,), kg m^2 (floats: for proofs enclose them instead)."""
+        return np.linalg.eigvalsh(self.inertia)
+
+    @cached_property
+    def satisfies_triangle_inequality(self) -> bool:
+        """Whether each principal inertia is at most the sum of the other two (exact: tr(J)/2 I - J >= 0)."""
+        J = self.exact_inertia
+        half = (J[0][0] + J[1][1] + J[2][2]) / 2
+        M = tuple(tuple((half if i == j else Fraction(0)) - J[i][j] for j in range(3)) for i in range(3))
+        pairs = ((0, 1), (0, 2), (1, 2))
+        first = all(M[i][i] >= 0 for i in range(3))
+        second = all(M[i][i] * M[j][j] - M[i][j] ** 2 >= 0 for i, j in pairs)
+        return first and second and _determinant(M) >= 0
+
+
+def leading_minors(matrix: Sequence[Sequence[Fraction]]) -> tuple[Fraction, Fraction, Fraction]:
+    """Leading principal minors of a 3 by 3 matrix; all positive iff a symmetric one is positive definite."""
+    m = matrix
+    return m[0][0], m[0][0] * m[1][1] - m[0][1] * m[1][0], _determinant(m)
+
+
+def _determinant(m: Sequence[Sequence[Fraction]]) -> Fraction:
+    return (
+        m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1])
+        - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
+        + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0])
+    )
+
+
+def attitude_rate(b0: Any, bv: Any, w: Any) -> tuple[Any, Any]:
+    """Quaternion kinematics: (b0', bv') for the body rate w, rad/s, as CasADi expressions."""
+    import casadi as ca
+
+    return -ca.dot(bv, w) / 2, (b0 * w + ca.cross(bv, w)) / 2
+
+
+def momentum_rate(J: Any, w: Any, torque: Any) -> Any:
+    """Euler's equation: J w' = -w x J w + torque, N m, as a CasADi expression (no inverse of J)."""
+    import casadi as ca
+
+    return -ca.cross(w, J @ w) + torque

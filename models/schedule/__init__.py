@@ -1,0 +1,7 @@
+"""Thruster schedules as exact piecewise polynomials of time."""
+
+from .piecewise import Piece, PiecewisePolynomial
+from .profiles import Hermite, Ramps, Shape, build_schedule
+from .schedule import Schedule, Window
+
+__all__ = ["Hermite", "Piece", "PiecewisePolynomial", "Ramps", "Schedule", "Shape", "Window", "build_schedule"]

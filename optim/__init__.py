@@ -1,0 +1,1 @@
+"""What is best: windowed optimum, certified lower bounds, comparison, tuning."""

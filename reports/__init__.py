@@ -1,0 +1,1 @@
+"""Say it: the record and the pages made from it."""

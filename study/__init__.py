@@ -1,0 +1,1 @@
+"""Run what is asked: one case, a comparison, a sweep."""
