@@ -4,4 +4,13 @@ from .piecewise import Piece, PiecewisePolynomial
 from .profiles import Hermite, Ramps, Shape, build_schedule
 from .schedule import Schedule, Window
 
-__all__ = ["Hermite", "Piece", "PiecewisePolynomial", "Ramps", "Schedule", "Shape", "Window", "build_schedule"]
+__all__ = [
+    "Hermite",
+    "Piece",
+    "PiecewisePolynomial",
+    "Ramps",
+    "Schedule",
+    "Shape",
+    "Window",
+    "build_schedule",
+]

@@ -128,7 +128,9 @@ class Schedule:
 
     def knots_between(self, start: Fraction, stop: Fraction) -> tuple[Fraction, ...]:
         """Start, the knots strictly inside (start, stop), and stop: no integration may cross one."""
-        inside = {p.start for p in self.pieces_between(start, stop)} | {p.end for p in self.pieces_between(start, stop)}
+        inside = {p.start for p in self.pieces_between(start, stop)} | {
+            p.end for p in self.pieces_between(start, stop)
+        }
         return (start, *sorted(k for k in inside if start < k < stop), stop)
 
     @cached_property
@@ -150,7 +152,9 @@ class Schedule:
         local = np.mod(times, float(self.period)) if self.period is not None else times
         index = np.clip(np.searchsorted(knots, local, side="right") - 1, 0, coefficients.shape[1] - 1)
         tau = local - knots[index]
-        powers = coefficients if order == 0 else coefficients[1:] * np.arange(1, coefficients.shape[0])[:, None]
+        powers = (
+            coefficients if order == 0 else coefficients[1:] * np.arange(1, coefficients.shape[0])[:, None]
+        )
         value = np.zeros_like(tau)
         for row in powers[::-1]:
             value = value * tau + row[index]
