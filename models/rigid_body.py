@@ -67,7 +67,7 @@ class RigidBody:
     @cached_property
     def principal_inertias(self) -> Array:
         """Eigenvalues of J, ascending, (3,), kg m^2 (floats: for proofs enclose them instead)."""
-        return np.linalg.eigvalsh(self.inertia)
+        return np.asarray(np.linalg.eigvalsh(self.inertia), dtype=float)
 
     @cached_property
     def satisfies_triangle_inequality(self) -> bool:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property, lru_cache
+from functools import cache, cached_property
 from typing import final
 
 from . import polynomial as poly
@@ -69,7 +69,7 @@ class PiecewisePolynomial:
         return tuple(piece.length * _square_integral(piece.shape) for piece in self.pieces)
 
 
-@lru_cache(maxsize=None)
+@cache
 def _square_integral(shape: Coefficients) -> Fraction:
     """Integral of shape(s)^2 over [0, 1]."""
     return poly.evaluate(poly.antiderivative(poly.multiply(shape, shape)), Fraction(1))

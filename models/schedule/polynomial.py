@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
-from functools import lru_cache
+from functools import cache
 from itertools import zip_longest
 
 Coefficients = tuple[Fraction, ...]
@@ -84,7 +84,7 @@ def bernstein(p: Coefficients, degree: int | None = None) -> Coefficients:
     )
 
 
-@lru_cache(maxsize=None)
+@cache
 def _binomial(n: int, k: int) -> int:
     from math import comb
 

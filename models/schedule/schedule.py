@@ -80,7 +80,7 @@ class Schedule:
         return self.profile.knots[-1]
 
     def pieces_between(self, start: Fraction, stop: Fraction) -> Iterator[Piece]:
-        """Pieces of g that meet (start, stop), whole, in absolute time; beyond a finite table a zero piece."""
+        """Pieces of g that meet (start, stop), whole, in absolute time; after a table, zero."""
         if self.period is None:
             yield from self._table_pieces(start, stop, Fraction(0))
             if stop > self.end:
