@@ -104,9 +104,10 @@ class Law(ABC):
     @property
     def parameters(self) -> dict[str, Fraction]:
         """Exact parameter values by name, in field order."""
-        if not is_dataclass(type(self)):
-            raise TypeError(f"law {type(self).__name__} must be a dataclass: its fields are its parameters")
-        values = {f.name.rstrip("_"): getattr(self, f.name) for f in fields(self)}
+        law: Any = self
+        if not is_dataclass(law):
+            raise TypeError(f"law {type(law).__name__} must be a dataclass: its fields are its parameters")
+        values = {f.name.rstrip("_"): getattr(law, f.name) for f in fields(law)}
         return {key: Fraction(v) for key, v in values.items() if isinstance(v, (int, float, Fraction))}
 
     @property
