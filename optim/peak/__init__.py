@@ -1,0 +1,1 @@
+"""Least peak torque through the windows: transcription, two solvers, verification, multi-start."""
