@@ -75,7 +75,7 @@ class Euclidean(Norm):
 
     def peak(self, torque: ArrayLike) -> Array:
         """Euclidean length."""
-        return np.linalg.norm(np.asarray(torque, dtype=float), axis=-1)
+        return np.asarray(np.linalg.norm(np.asarray(torque, dtype=float), axis=-1))
 
     def effort(self, control: ArrayLike) -> Array:
         """Euclidean length."""
@@ -108,7 +108,7 @@ class LargestComponent(Norm):
 
     def peak(self, torque: ArrayLike) -> Array:
         """Largest absolute component."""
-        return np.abs(np.asarray(torque, dtype=float)).max(axis=-1)
+        return np.asarray(np.abs(np.asarray(torque, dtype=float)).max(axis=-1))
 
     def effort(self, control: ArrayLike) -> Array:
         """Largest absolute component."""
@@ -116,7 +116,7 @@ class LargestComponent(Norm):
 
     def support(self, direction: ArrayLike) -> Array:
         """Sum of absolute components (polar of the cube)."""
-        return np.abs(np.asarray(direction, dtype=float)).sum(axis=-1)
+        return np.asarray(np.abs(np.asarray(direction, dtype=float)).sum(axis=-1))
 
 
 @final
@@ -189,7 +189,7 @@ class ThrusterAxes(Norm):
         floor = 1e-12 * heights.max()
         dead = heights <= floor
         ratio = np.where(dead, np.where(reach > floor, np.inf, 0.0), reach / np.where(dead, 1.0, heights))
-        return np.maximum(ratio.max(axis=-1), 0.0)
+        return np.asarray(np.maximum(ratio.max(axis=-1), 0.0))
 
     def effort(self, control: ArrayLike) -> Array:
         """Largest force; inf if a force is negative (thrust is one-sided)."""
@@ -198,4 +198,5 @@ class ThrusterAxes(Norm):
 
     def support(self, direction: ArrayLike) -> Array:
         """Sum over the thrusters of the positive part of direction . axis."""
-        return np.maximum(np.asarray(direction, dtype=float) @ self.control_matrix, 0.0).sum(axis=-1)
+        reach = np.asarray(direction, dtype=float) @ self.control_matrix
+        return np.asarray(np.maximum(reach, 0.0).sum(axis=-1))

@@ -151,7 +151,7 @@ class TransferProblem:
     def unit_attitude(self) -> Array:
         """Start quaternion as floats, unit length, (4,)."""
         q = np.array([float(x) for x in self.attitude])
-        return q / np.linalg.norm(q)
+        return np.asarray(q / np.linalg.norm(q))
 
     @cached_property
     def start_rate(self) -> Array:
