@@ -1,0 +1,40 @@
+"""The one exception a user's input can raise: a single line that names the file and the key."""
+
+from __future__ import annotations
+
+from typing import final
+
+LONGEST_QUOTE = 60
+"""Characters of a user's own text that an error message repeats."""
+
+
+@final
+class ScenarioError(ValueError):
+    """Bad input, said in one line: file, key (or CSV line), what was expected and received.
+
+    Attributes
+    ----------
+    where : str
+        File, and the key or CSV line in it.
+    problem : str
+        What is wrong there and what to do.
+    """
+
+    def __init__(self, where: str, problem: str) -> None:
+        self.where = one_line(where)
+        self.problem = one_line(problem)
+        super().__init__(f"{self.where}: {self.problem}")
+
+
+def one_line(text: str) -> str:
+    """Return the text with every control character and line break made visible."""
+    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
+
+
+def quote(value: object) -> str:
+    """Return a user's own value as it is repeated in a message: one line, not endless."""
+    text = value if isinstance(value, str) else str(value)
+    shown = one_line(text)
+    if len(shown) > LONGEST_QUOTE:
+        shown = shown[: LONGEST_QUOTE - 3] + "..."
+    return f"'{shown}'" if isinstance(value, str) else shown

@@ -1,0 +1,176 @@
+"""Where a run starts: one state, or a set of states; always as an error from the target attitude."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .document import Document
+from .errors import ScenarioError
+from .schema import AttitudeTable, InitialSetTable, InitialTable, ScenarioFile
+
+Array = NDArray[np.float64]
+UNIT_TOLERANCE = Fraction(1, 10**6)
+"""How far a quaternion's squared norm may be from 1; within it, it is normalised."""
+ANGLE_ALLOWANCE = Fraction(1, 10**9)
+"""Added to a float angle, deg, so that the set certainly holds the state (rounding is 1e-13)."""
+
+
+@final
+@dataclass(frozen=True)
+class InitialState:
+    """The state at t = 0.
+
+    Attributes
+    ----------
+    attitude : error quaternion from the target, scalar first, unit, (4,)
+    exact_rate : body rate, rad/s, exact, (3,)
+    representative : whether it was chosen on the edge of the initial set, not given by the user
+    """
+
+    attitude: tuple[float, float, float, float]
+    exact_rate: tuple[Fraction, Fraction, Fraction]
+    representative: bool = False
+
+    @property
+    def quaternion(self) -> Array:
+        """The error quaternion as an array, scalar first, (4,)."""
+        return np.array(self.attitude)
+
+    @property
+    def rate(self) -> Array:
+        """Body rate, rad/s, (3,)."""
+        return np.array([float(x) for x in self.exact_rate])
+
+    @property
+    def angle_deg(self) -> float:
+        """Error angle 2 acos b0 in [0, 360], deg (over 180 it unwinds the long way)."""
+        return math.degrees(2 * math.atan2(math.hypot(*self.attitude[1:]), self.attitude[0]))
+
+
+@final
+@dataclass(frozen=True)
+class InitialSet:
+    """All states with error angle <= `max_angle_deg` (2 acos b0, deg) and a bounded rate.
+
+    Attributes
+    ----------
+    max_rate : bound on |w|, rad/s, or None
+    max_weighted_rate : bound on sqrt(Omega' J Omega), sqrt(kg m^2)/s, or None
+        Where both are None the set is at rest; where both are given, both hold.
+    from_state : whether it was derived from the initial state, which it then certainly holds
+    """
+
+    max_angle_deg: Fraction
+    max_rate: Fraction | None
+    max_weighted_rate: Fraction | None
+    from_state: bool = False
+
+
+def build(file: ScenarioFile, document: Document) -> tuple[InitialState, InitialSet]:
+    """Return the initial state and set; each is derived from the other where only one is given.
+
+    Raises
+    ------
+    ScenarioError
+        If neither is given, a quaternion is not unit, or an axis is zero or lacks its angle.
+    """
+    target = attitude(file.target, document, "target")
+    if file.initial is None and file.initial_set is None:
+        raise ScenarioError(document.where("initial"), "required (or [initial_set]), but missing")
+    if file.initial is not None:
+        state = _state(file.initial, target, document)
+    else:
+        assert file.initial_set is not None
+        state = _representative(file.initial_set)
+    if file.initial_set is not None:
+        table = file.initial_set
+        bounds = InitialSet(table.max_angle_deg, table.max_rate, table.max_weighted_rate)
+        if file.initial is not None:
+            _check_inside(state, bounds, document)
+    else:
+        bounds = _around(state)
+    return state, bounds
+
+
+def attitude(table: AttitudeTable, document: Document, key: str) -> tuple[float, ...]:
+    """Return the unit quaternion, scalar first, of a table that gives it or an axis and an angle."""
+    if table.quaternion is not None and table.axis is None and table.angle_deg is None:
+        square = sum((x * x for x in table.quaternion), Fraction(0))
+        if abs(square - 1) > UNIT_TOLERANCE:
+            norm = math.sqrt(square)
+            raise ScenarioError(
+                document.where(f"{key}.quaternion"),
+                f"must be a unit quaternion, scalar first, received norm {norm:.7g}",
+            )
+        norm = math.sqrt(square)
+        return tuple(float(x) / norm for x in table.quaternion)
+    if table.quaternion is None and table.axis is not None and table.angle_deg is not None:
+        square = sum((x * x for x in table.axis), Fraction(0))
+        if square == 0:
+            raise ScenarioError(document.where(f"{key}.axis"), "must not be zero")
+        if abs(table.angle_deg) >= 360:
+            raise ScenarioError(
+                document.where(f"{key}.angle_deg"),
+                f"must lie between -360 and 360, received {float(table.angle_deg):g}",
+            )
+        half = math.radians(float(table.angle_deg)) / 2
+        factor = math.sin(half) / math.sqrt(square)
+        return (math.cos(half), *(factor * float(x) for x in table.axis))
+    raise ScenarioError(document.where(key), "expected either quaternion, or axis with angle_deg")
+
+
+def _state(table: InitialTable, target: tuple[float, ...], document: Document) -> InitialState:
+    q = attitude(table, document, "initial")
+    error = q if target[0] == 1.0 else _relative(target, q)
+    return InitialState((error[0], error[1], error[2], error[3]), table.rate)
+
+
+def _relative(target: tuple[float, ...], q: tuple[float, ...]) -> tuple[float, ...]:
+    """conj(target) q: the attitude as seen from the target."""
+    t0, tv = target[0], -np.array(target[1:])
+    b0, bv = q[0], np.array(q[1:])
+    vector = t0 * bv + b0 * tv + np.cross(tv, bv)
+    product = np.array([t0 * b0 - tv @ bv, *vector])
+    return tuple(float(x) for x in product / np.linalg.norm(product))
+
+
+def _representative(table: InitialSetTable) -> InitialState:
+    """Return the largest angle of the set, about (1, 1, 1), at rest."""
+    half = math.radians(float(table.max_angle_deg)) / 2
+    v = math.sin(half) / math.sqrt(3)
+    zero = Fraction(0)
+    return InitialState((math.cos(half), v, v, v), (zero, zero, zero), representative=True)
+
+
+def _around(state: InitialState) -> InitialSet:
+    square = sum((x * x for x in state.exact_rate), Fraction(0))
+    rate = Fraction(0)
+    if square:
+        rate = Fraction(math.nextafter(math.sqrt(square), math.inf))
+        while rate * rate < square:
+            rate = Fraction(math.nextafter(float(rate), math.inf))
+    angle = min(Fraction(state.angle_deg) + ANGLE_ALLOWANCE, Fraction(360))
+    return InitialSet(angle, rate, None, from_state=True)
+
+
+def _check_inside(state: InitialState, bounds: InitialSet, document: Document) -> None:
+    allowance = float(ANGLE_ALLOWANCE)
+    if state.angle_deg > float(bounds.max_angle_deg) + allowance:
+        raise ScenarioError(
+            document.where("initial_set.max_angle_deg"),
+            f"the initial state's error angle, {state.angle_deg:.6g} deg, lies outside "
+            f"{float(bounds.max_angle_deg):g} deg",
+        )
+    square = sum((x * x for x in state.exact_rate), Fraction(0))
+    if bounds.max_rate is not None and square > bounds.max_rate**2:
+        raise ScenarioError(
+            document.where("initial_set.max_rate"),
+            f"the initial state's rate, {math.sqrt(square):.6g} rad/s, lies outside "
+            f"{float(bounds.max_rate):g} rad/s",
+        )

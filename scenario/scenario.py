@@ -1,0 +1,159 @@
+"""The loaded scenario: what was asked, as objects of `models`, exact, with its hash and warnings."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import final
+
+from ..models.rigid_body import ExactMatrix, RigidBody
+from ..models.schedule import Schedule
+from . import initial, laws, schedules, spacecraft
+from .document import Document, read_document
+from .errors import ScenarioError, quote
+from .fingerprint import fingerprint
+from .initial import InitialSet, InitialState
+from .laws import LawChoice
+from .questions import CheckTable, CompareTable, OptimumTable, StudyTable, TuneTable
+from .schedules import ScheduleChoice
+from .schema import LimitsTable, ScenarioFile, SimulationTable, ToleranceTable
+from .validate import validate
+
+DEFAULT_PERIODS = 7
+"""Periods that a run covers unless the scenario gives a horizon."""
+DEFAULT_WINDOWS = 100
+"""Windows after which a run over a long table ends unless the scenario gives a horizon."""
+
+
+@final
+@dataclass(frozen=True)
+class Scenario:
+    """Everything a study needs to know, checked.
+
+    Attributes
+    ----------
+    path : the file it was read from
+    name, description : the user's words, any text
+    spacecraft_name : the user's word for the body
+    body : rigid body with its exact inertia
+    inertia_tolerance : largest deviation of each entry, kg m^2, exact, or None
+    schedule_choice : the schedule, its shape and source
+    initial : state at t = 0, as an error from the target attitude
+    initial_set : set of states over which claims are made
+    laws : the laws, not yet built, in the file's order
+    tolerance, simulation, limits, check, optimum, compare, tune, study : the tables of those names
+    warnings : one line each; nothing in them stops a run
+    sha256 : hash of what the scenario says, files it names included
+    """
+
+    path: Path
+    name: str
+    description: str
+    spacecraft_name: str
+    body: RigidBody
+    inertia_tolerance: ExactMatrix | None
+    schedule_choice: ScheduleChoice
+    initial: InitialState
+    initial_set: InitialSet
+    laws: tuple[LawChoice, ...]
+    tolerance: ToleranceTable
+    simulation: SimulationTable
+    limits: LimitsTable | None
+    check: CheckTable
+    optimum: OptimumTable
+    compare: CompareTable
+    tune: TuneTable
+    study: StudyTable
+    warnings: tuple[str, ...]
+    sha256: str
+
+    @property
+    def schedule(self) -> Schedule:
+        """The exact thruster schedule."""
+        return self.schedule_choice.schedule
+
+    @property
+    def horizon(self) -> Fraction:
+        """End of a run, s: as given, else seven periods, or the table's end (its 100th window at most)."""
+        if self.simulation.horizon is not None:
+            return self.simulation.horizon
+        schedule = self.schedule
+        if len(schedule.windows) > DEFAULT_WINDOWS:
+            return schedule.windows[DEFAULT_WINDOWS - 1].off
+        if schedule.period is None:
+            return schedule.end
+        return schedule.period * (DEFAULT_PERIODS if len(schedule.windows) == 1 else 1)
+
+    def law(self, label: str) -> LawChoice:
+        """Return the law of that label.
+
+        Raises
+        ------
+        ScenarioError
+            If there is none.
+        """
+        for choice in self.laws:
+            if choice.label == label:
+                return choice
+        known = ", ".join(quote(choice.label) for choice in self.laws) or "none"
+        raise ScenarioError(self.path.name, f"has no law labelled {quote(label)} (it has {known})")
+
+
+def load_scenario(path: str | Path) -> Scenario:
+    """Read, check and build a scenario.
+
+    Raises
+    ------
+    ScenarioError
+        One line that names the file and the key or CSV line, for anything wrong with the input.
+    """
+    document = read_document(Path(path))
+    return build_scenario(validate(document), document)
+
+
+def build_scenario(file: ScenarioFile, document: Document) -> Scenario:
+    """Build a scenario from its typed file."""
+    body, tolerance, warnings = spacecraft.build(file.spacecraft, document)
+    schedule_choice = schedules.build(file.schedule, document)
+    state, bounds = initial.build(file, document)
+    choices = laws.build(file, document)
+    if bounds.max_angle_deg > 180 + initial.ANGLE_ALLOWANCE:
+        warnings += (
+            f"{document.where('initial' if bounds.from_state else 'initial_set')}: error angle up to "
+            f"{float(bounds.max_angle_deg):.6g} deg (2 acos b0): the laws unwind it the long way; "
+            "the other sign of the quaternion is the same attitude and turns the short way",
+        )
+    return Scenario(
+        path=document.path,
+        name=file.name or document.path.stem,
+        description=file.description,
+        spacecraft_name=file.spacecraft.name,
+        body=body,
+        inertia_tolerance=tolerance,
+        schedule_choice=schedule_choice,
+        initial=state,
+        initial_set=bounds,
+        laws=choices,
+        tolerance=file.tolerance,
+        simulation=file.simulation,
+        limits=file.limits,
+        check=file.check,
+        optimum=file.optimum,
+        compare=file.compare,
+        tune=file.tune,
+        study=file.study,
+        warnings=warnings,
+        sha256=fingerprint(file, _attachments(file, document, choices)),
+    )
+
+
+def _attachments(file: ScenarioFile, document: Document, choices: tuple[LawChoice, ...]) -> dict[str, Path]:
+    """Files whose content is part of what the scenario says."""
+    folder = document.origin("schedule").parent
+    names = [file.schedule.csv, file.schedule.thrust.csv if file.schedule.thrust else None]
+    found = {f"schedule: {Path(name).name}": folder / name for name in names if name is not None}
+    for choice in choices:
+        if choice.file is not None and choice.file.is_file():
+            found[f"law {choice.label}: {choice.file.name}"] = choice.file
+    return found

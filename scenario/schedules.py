@@ -1,0 +1,174 @@
+"""From the [schedule] table to an exact `Schedule`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import final
+
+from ..models.schedule import Hermite, Ramps, Schedule, Shape, Window, build_schedule
+from .csv_tables import read_rows
+from .document import Document
+from .errors import ScenarioError
+from .schema import ScheduleTable
+from .thrust import measured_schedule
+
+LARGEST_COUNT = 1_000_000
+"""Windows that `count` may ask for."""
+Locate = Callable[[int], str]
+"""From the position of a window (from 0) to the words by which messages name it."""
+
+
+@final
+@dataclass(frozen=True)
+class ScheduleChoice:
+    """The schedule of a scenario and what was asked for.
+
+    Attributes
+    ----------
+    shape : "hermite", "hermite-as-printed", "ramps" or "measured"
+        "hermite-as-printed" lets g act until `thruster_fall` after `off` (erratum E9).
+    source : str
+        Where the windows come from, in words.
+    """
+
+    schedule: Schedule
+    shape: str
+    source: str
+
+    @property
+    def overruns_as_printed(self) -> bool:
+        """Whether g is meant to overrun `off` as the paper prints it."""
+        return self.shape == "hermite-as-printed"
+
+
+def build(table: ScheduleTable, document: Document) -> ScheduleChoice:
+    """Build the schedule of a scenario.
+
+    Raises
+    ------
+    ScenarioError
+        Naming the key, window or CSV line.
+    """
+    forms = {
+        "windows": table.windows is not None,
+        "csv": table.csv is not None,
+        "on_time": table.on_time is not None,
+        "thrust": table.thrust is not None,
+    }
+    given = [name for name, present in forms.items() if present]
+    if len(given) != 1:
+        found = " and ".join(given) if given else "none of them"
+        raise ScenarioError(
+            document.where("schedule"),
+            f"expected exactly one of windows, csv, on_time (with period), thrust; received {found}",
+        )
+    _refuse_stray_keys(table, given[0], document)
+    if table.thrust is not None:
+        schedule = measured_schedule(table, document)
+        return ScheduleChoice(schedule, "measured", f"thrust samples {Path(table.thrust.csv).name}")
+    windows, locate, source = _windows(table, document)
+    period = table.period if table.count is None else None
+    _check_order(windows, period, locate)
+    name = table.shape or "hermite"
+    try:
+        schedule = build_schedule(
+            windows,
+            _shape(name, table, document),
+            period=period,
+            thruster_rise=table.thruster_rise,
+            thruster_fall=table.thruster_fall,
+        )
+    except ScenarioError:
+        raise
+    except ValueError as error:
+        raise ScenarioError(document.where("schedule"), str(error)) from None
+    return ScheduleChoice(schedule, name, source)
+
+
+def _refuse_stray_keys(table: ScheduleTable, form: str, document: Document) -> None:
+    stray = {
+        "on": table.on is not None and form != "on_time",
+        "count": table.count is not None and form != "on_time",
+        "shape": table.shape is not None and form == "thrust",
+        "ramp_up": table.ramp_up is not None and table.shape != "ramps",
+        "ramp_down": table.ramp_down is not None and table.shape != "ramps",
+    }
+    for key, present in stray.items():
+        if present:
+            owner = "shape = 'ramps'" if key.startswith("ramp") else "on_time and period"
+            reason = "thrust samples have their own shape" if key == "shape" else f"belongs to {owner}"
+            raise ScenarioError(document.where(f"schedule.{key}"), f"{reason}: remove it")
+
+
+def _windows(table: ScheduleTable, document: Document) -> tuple[list[Window], Locate, str]:
+    if table.windows is not None:
+        key = document.where("schedule.windows")
+        if not table.windows:
+            raise ScenarioError(key, "is empty: give at least one [on, off] pair")
+        windows = [Window(on, off) for on, off in table.windows]
+        return windows, lambda i: f"{key}[{i + 1}]", f"table of {len(windows)} windows"
+    if table.csv is not None:
+        key = document.where("schedule.csv")
+        path = document.origin("schedule").parent / table.csv
+        rows = read_rows(path, key, ("on", "off"))
+        lines = [row.line for row in rows]
+        windows = [Window(row.first, row.second) for row in rows]
+        return windows, lambda i: f"{key}: {path.name} line {lines[i]}", f"{path.name}, {len(rows)} windows"
+    key = document.where("schedule.on_time")
+    if table.period is None:
+        raise ScenarioError(document.where("schedule.period"), "required with on_time, but missing")
+    on, on_time, period = table.on or Fraction(0), table.on_time or Fraction(0), table.period
+    count = table.count or 1
+    if table.count is not None and count > LARGEST_COUNT:
+        raise ScenarioError(
+            document.where("schedule.count"), f"must be at most {LARGEST_COUNT}, received {count}"
+        )
+    if on + on_time > period:
+        raise ScenarioError(
+            key, f"on + on_time = {float(on + on_time):g} s goes beyond the period of {float(period):g} s"
+        )
+    windows = [Window(k * period + on, k * period + on + on_time) for k in range(count)]
+    many = "endless" if table.count is None else f"{count} windows"
+    return windows, lambda _: key, f"period {float(period):g} s, on {float(on_time):g} s, {many}"
+
+
+def _check_order(windows: Sequence[Window], period: Fraction | None, locate: Locate) -> None:
+    """Refuse windows that are empty, disordered or overlapping, naming key or CSV line."""
+    for i, window in enumerate(windows):
+        if window.on < 0:
+            raise ScenarioError(locate(i), f"opens at {float(window.on):g} s: times start at 0 s")
+        if window.off <= window.on:
+            raise ScenarioError(
+                locate(i), f"closes ({float(window.off):g} s) before it opens ({float(window.on):g} s)"
+            )
+        if i and window.on < windows[i - 1].off:
+            raise ScenarioError(
+                locate(i),
+                f"opens ({float(window.on):g} s) before the window above it closes "
+                f"({float(windows[i - 1].off):g} s): windows must be in order and not overlap",
+            )
+        if period is not None and window.off > period:
+            raise ScenarioError(
+                locate(i), f"closes ({float(window.off):g} s) after the period ends ({float(period):g} s)"
+            )
+
+
+def _shape(name: str, table: ScheduleTable, document: Document) -> Shape:
+    if name == "ramps":
+        for key, value in (("ramp_up", table.ramp_up), ("ramp_down", table.ramp_down)):
+            if value is None:
+                raise ScenarioError(
+                    document.where(f"schedule.{key}"), "required with shape = 'ramps', but missing"
+                )
+        return Ramps(table.ramp_up or Fraction(0), table.ramp_down or Fraction(0))
+    if name == "hermite-as-printed":
+        if table.thruster_fall == 0:
+            raise ScenarioError(
+                document.where("schedule.thruster_fall"),
+                "required with shape = 'hermite-as-printed' (g overruns off by it), but missing",
+            )
+        return Hermite(table.thruster_fall)
+    return Hermite()

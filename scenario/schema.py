@@ -1,0 +1,167 @@
+"""What a scenario file may say: every table, key, unit and default. Unknown keys are refused.
+
+Numbers are exact (`exact.py`): what the user wrote as a decimal is kept as that fraction. Units
+are SI; angles are in degrees where the key says `_deg`.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any, Literal
+
+from pydantic import Field, StrictBool, field_validator
+
+from .exact import Count, Exact, Matrix, NotNegative, Positive, Text, Vector
+from .questions import CheckTable, CompareTable, OptimumTable, StudyTable, TuneTable
+from .table import Table
+
+Norm = Literal["component", "euclidean"]
+ShapeName = Literal["hermite", "hermite-as-printed", "ramps"]
+
+
+class SpacecraftTable(Table):
+    """[spacecraft]: `inertia`, kg m^2, body frame; `inertia_tolerance`: every entry known to +- this."""
+
+    name: Text = ""
+    inertia: Matrix
+    inertia_tolerance: Any = None
+
+
+class ThrustTable(Table):
+    """[schedule.thrust]: measured samples, time (s) and thrust (any unit, the same throughout).
+
+    g = thrust / full_thrust (by default the largest sample), and 0 where that is below `zero_below`.
+    """
+
+    csv: Text
+    full_thrust: Positive | None = None
+    zero_below: NotNegative
+
+
+class ScheduleTable(Table):
+    """[schedule]: exactly one of `windows`, `csv`, `on` with `on_time`, `thrust`; times in s.
+
+    `period` repeats the table for ever; without it a table or CSV is finite. `on`, `on_time` and
+    `period` describe one window a period, endless unless `count` ends it.
+    """
+
+    windows: tuple[tuple[Exact, Exact], ...] | None = None
+    csv: Text | None = None
+    on: NotNegative | None = None
+    on_time: Positive | None = None
+    count: Count | None = None
+    thrust: ThrustTable | None = None
+    period: Positive | None = None
+    shape: ShapeName | None = None
+    ramp_up: Positive | None = None
+    ramp_down: Positive | None = None
+    thruster_rise: NotNegative = Fraction(0)
+    thruster_fall: NotNegative = Fraction(0)
+
+
+class AttitudeTable(Table):
+    """[target]: an attitude, as `quaternion` (scalar first) or as `axis` and `angle_deg`."""
+
+    quaternion: tuple[Exact, Exact, Exact, Exact] | None = None
+    axis: Vector | None = None
+    angle_deg: Exact | None = None
+
+
+class InitialTable(AttitudeTable):
+    """[initial]: an attitude and the body rate, rad/s, body frame."""
+
+    rate: Vector = (Fraction(0), Fraction(0), Fraction(0))
+
+
+class InitialSetTable(Table):
+    """[initial_set]: largest error angle 2 acos b0, deg, and largest rate.
+
+    `max_rate` bounds |w|, rad/s; `max_weighted_rate` bounds sqrt(Omega' J Omega), sqrt(kg m^2)/s.
+    """
+
+    max_angle_deg: NotNegative
+    max_rate: NotNegative | None = None
+    max_weighted_rate: NotNegative | None = None
+
+    @field_validator("max_angle_deg")
+    @classmethod
+    def _below_full_turn(cls, value: Fraction) -> Fraction:
+        if value >= 360:
+            raise ValueError(f"must be < 360 (the error angle is 2 acos b0), received {float(value):g}")
+        return value
+
+
+class LawTable(Table):
+    """[[law]]: a law's `type`, its parameters, and the `label` that tables and figures show."""
+
+    type: Text
+    label: Text | None = None
+    lambda_: Positive | None = Field(default=None, alias="lambda")
+    gamma: Positive | None = None
+    R0: Positive | None = None
+    k0: NotNegative | None = None
+    a: Positive | None = None
+    proportional: NotNegative | None = None
+    derivative: NotNegative | None = None
+    file: Text | None = None
+    class_: Text | None = Field(default=None, alias="class")
+    parameters: dict[str, Exact] | None = None
+
+
+class LawDefaultsTable(Table):
+    """[law_defaults]: parameters that every law takes unless it states its own."""
+
+    lambda_: Positive | None = Field(default=None, alias="lambda")
+    gamma: Positive | None = None
+    R0: Positive | None = None
+    k0: NotNegative | None = None
+    a: Positive | None = None
+
+
+class ToleranceTable(Table):
+    """[tolerance]: settled means |bv| <= `attitude` and |w| <= `rate` (rad/s), Euclidean, for good."""
+
+    attitude: Positive = Fraction(1, 100)
+    rate: Positive = Fraction(1, 100)
+
+
+class SimulationTable(Table):
+    """[simulation]: `horizon` and `output_step` of the histories, s; `saturate` at the torque limit."""
+
+    horizon: Positive | None = None
+    output_step: Positive = Fraction(1, 100)
+    saturate: StrictBool = False
+
+
+class LimitsTable(Table):
+    """[limits]: `torque`, N m, that the applied torque must not exceed in the given `norm`."""
+
+    torque: Positive
+    norm: Norm = "component"
+
+
+class ScenarioFile(Table):
+    """The whole file."""
+
+    name: Text = ""
+    description: Text = ""
+    spacecraft: SpacecraftTable
+    schedule: ScheduleTable
+    initial: InitialTable | None = None
+    initial_set: InitialSetTable | None = None
+    target: AttitudeTable = AttitudeTable(quaternion=(Fraction(1), Fraction(0), Fraction(0), Fraction(0)))
+    law: tuple[LawTable, ...] = ()
+    law_defaults: LawDefaultsTable = LawDefaultsTable()
+    tolerance: ToleranceTable = ToleranceTable()
+    simulation: SimulationTable = SimulationTable()
+    limits: LimitsTable | None = None
+    check: CheckTable = CheckTable()
+    optimum: OptimumTable = OptimumTable()
+    compare: CompareTable = CompareTable()
+    tune: TuneTable = TuneTable()
+    study: StudyTable = StudyTable()
+
+    @field_validator("law", mode="before")
+    @classmethod
+    def _one_law_or_many(cls, value: Any) -> Any:
+        return [value] if isinstance(value, dict) else value

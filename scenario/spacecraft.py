@@ -1,0 +1,62 @@
+"""From the [spacecraft] table to a rigid body and its inertia tolerance."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from ..models.rigid_body import ExactMatrix, RigidBody
+from .document import Document
+from .errors import ScenarioError, quote
+from .exact import exact
+from .schema import SpacecraftTable
+
+
+def build(
+    table: SpacecraftTable, document: Document
+) -> tuple[RigidBody, ExactMatrix | None, tuple[str, ...]]:
+    """Body, largest deviation of each entry of its inertia (or None), and warnings.
+
+    Raises
+    ------
+    ScenarioError
+        If the inertia is not symmetric or not positive definite, or the tolerance is not a number
+        or a symmetric 3 by 3 table of numbers >= 0.
+    """
+    key = document.where("spacecraft.inertia")
+    try:
+        body = RigidBody(table.inertia)
+    except ValueError as error:
+        raise ScenarioError(key, str(error)) from None
+    warnings: tuple[str, ...] = ()
+    if not body.satisfies_triangle_inequality:
+        a, b, c = np.sort(body.principal_inertias)
+        warnings = (
+            f"{key}: breaks the triangle inequality (principal inertias {a:.6g}, {b:.6g}, {c:.6g} kg m^2): "
+            "no rigid body has it; the results stand for the equations as given",
+        )
+    tolerance = None if table.inertia_tolerance is None else _tolerance(table.inertia_tolerance, document)
+    return body, tolerance, warnings
+
+
+def _tolerance(value: Any, document: Document) -> ExactMatrix:
+    key = document.where("spacecraft.inertia_tolerance")
+    rows = value if isinstance(value, list) else [[value] * 3] * 3
+    if len(rows) != 3 or any(not isinstance(row, list) or len(row) != 3 for row in rows):
+        raise ScenarioError(key, f"expected a number or three rows of three numbers, received {quote(value)}")
+    numbers: list[list[Fraction]] = []
+    for row in rows:
+        try:
+            numbers.append([exact(x) for x in row])
+        except ValueError as error:
+            raise ScenarioError(key, str(error)) from None
+    for i in range(3):
+        for j in range(3):
+            if numbers[i][j] < 0:
+                raise ScenarioError(key, f"must be >= 0, received {float(numbers[i][j]):g}")
+            if numbers[i][j] != numbers[j][i]:
+                raise ScenarioError(key, "must be symmetric")
+    first, second, third = ((row[0], row[1], row[2]) for row in numbers)
+    return first, second, third
