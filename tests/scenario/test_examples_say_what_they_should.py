@@ -72,7 +72,8 @@ def test_loading_imports_no_solver(tmp_path):
     code = (
         "import sys; from intermit.scenario import load_scenario; "
         f"load_scenario({str(EXAMPLES / 'paper.toml')!r}); "
-        "print([m for m in ('casadi','cvxpy','scipy.optimize','matplotlib','rich','flint') if m in sys.modules])"
+        "heavy = ('casadi', 'cvxpy', 'scipy.optimize', 'matplotlib', 'rich', 'flint'); "
+        "print([m for m in heavy if m in sys.modules])"
     )
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=tmp_path
