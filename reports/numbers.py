@@ -1,0 +1,190 @@
+"""How a number is written: never with more digits than are known.
+
+A quantity is known to lie in [low, high].
+
+- two-sided: as many digits as every value in the interval rounds to; if that is fewer than two,
+  the interval itself, rounded outward;
+- a lower bound: low, rounded down; an upper bound: high, rounded up;
+- not available: a dash and the note.
+
+All rounding is decimal and exact on the stored double.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decimal
+from typing import Any, final
+
+MOST_DIGITS = 7
+"""Digits shown at most, however many are known."""
+BOUND_DIGITS = 5
+"""Digits of a one-sided bound: true at any length, and rounding it the safe way costs less than 1e-4."""
+MINUS = "\u2212"
+MISSING = "\u2013"
+_EXACT = Context(prec=400)
+
+
+@final
+@dataclass(frozen=True)
+class Written:
+    """A number in words a page can set: a relation, the digits (ASCII), an exponent and the unit.
+
+    `relation` is "", ">=" or "<=". `low` and `high` are the digits of an interval if one
+    number cannot say it, else `high` is empty.
+    """
+
+    relation: str
+    low: str
+    high: str
+    exponent: int
+    unit: str
+    rigorous: bool
+    note: str
+
+    @property
+    def missing(self) -> bool:
+        """Whether there is no number."""
+        return not self.low
+
+    @property
+    def ascii(self) -> str:
+        """Plain ASCII: ">= 1.25e-3 N m"; what CSV and tests read."""
+        if self.missing:
+            return self.note or "-"
+        power = f"e{self.exponent}" if self.exponent else ""
+        body = f"[{self.low}{power}, {self.high}{power}]" if self.high else self.low + power
+        return " ".join(p for p in (self.relation, body, self.unit) if p)
+
+    @property
+    def text(self) -> str:
+        """Unicode text: "≥ 1.25×10⁻³ N m", with a true minus."""
+        if self.missing:
+            return f"{MISSING} ({self.note})" if self.note else MISSING
+        power = f"×10{superscript(self.exponent)}" if self.exponent else ""
+        low, high = (d.replace("-", MINUS) for d in (self.low, self.high))
+        body = f"[{low}, {high}]{power}" if high else low + power
+        relation = {"": "", ">=": "≥", "<=": "≤"}[self.relation]
+        return " ".join(p for p in (relation, body, unit_text(self.unit)) if p)
+
+
+def write(quantity: Mapping[str, Any], *, most: int = MOST_DIGITS, unit: bool = True) -> Written:
+    """Write a record's quantity with the digits it deserves."""
+    low, high = (bound(quantity[k]) for k in ("low", "high"))
+    side = quantity.get("side", "both")
+    unit_name = quantity.get("unit", "") if unit else ""
+    rigorous, note = bool(quantity.get("rigorous")), str(quantity.get("note", ""))
+    if (low is None and side != "upper") or (high is None and side != "lower"):
+        return Written("", "", "", 0, unit_name, rigorous, note)
+    if side == "lower" and low is not None:
+        return _one(">=", low, ROUND_FLOOR, min(most, BOUND_DIGITS), unit_name, rigorous, note)
+    if side == "upper" and high is not None:
+        return _one("<=", high, ROUND_CEILING, min(most, BOUND_DIGITS), unit_name, rigorous, note)
+    if low is None or high is None:
+        return Written("", "", "", 0, unit_name, rigorous, note)
+    return _between(low, high, most, unit_name, rigorous, note)
+
+
+def bound(value: Any) -> float | None:
+    """Read a stored bound: a number, "inf", "-inf" or None."""
+    return None if value is None else float(value)
+
+
+def number(value: float, digits: int = 6) -> str:
+    """Write a plain number of the record to at most `digits`, trailing zeros dropped."""
+    if not math.isfinite(value):
+        return "inf" if value > 0 else "-inf"
+    shown = _rounded(value, digits, ROUND_HALF_EVEN)
+    mantissa, exponent = _layout(shown, shown)
+    text = _plain(mantissa(shown))
+    text = text.rstrip("0").rstrip(".") if "." in text else text
+    return text + (f"e{exponent}" if exponent else "")
+
+
+def _between(low: float, high: float, most: int, unit: str, rigorous: bool, note: str) -> Written:
+    if not (math.isfinite(low) and math.isfinite(high)):
+        return _unbounded(low, high, unit, rigorous, note)
+    if low == high:
+        exact = _rounded(low, most, ROUND_HALF_EVEN)
+        if exact == Decimal(low) or Decimal(repr(low)) == exact:
+            mantissa, exponent = _layout(exact, exact)
+            return Written("", _trim(_plain(mantissa(exact))), "", exponent, unit, rigorous, note)
+    for digits in range(most, 1, -1):
+        a, b = (_rounded(x, digits, ROUND_HALF_EVEN) for x in (low, high))
+        if a == b and a != 0:
+            mantissa, exponent = _layout(a, a)
+            return Written("", _plain(mantissa(a)), "", exponent, unit, rigorous, note)
+    largest = max(abs(low), abs(high))
+    digits = min(most, 2 + max(0, math.floor(math.log10(largest)) - math.floor(math.log10(high - low))))
+    step = Decimal(1).scaleb(Decimal(largest).adjusted() - digits + 1)
+    a = Decimal(low).quantize(step, ROUND_FLOOR, _EXACT)
+    b = Decimal(high).quantize(step, ROUND_CEILING, _EXACT)
+    mantissa, exponent = _layout(a, b)
+    return Written("", _plain(mantissa(a)), _plain(mantissa(b)), exponent, unit, rigorous, note)
+
+
+def _unbounded(low: float, high: float, unit: str, rigorous: bool, note: str) -> Written:
+    if math.isfinite(low):
+        return _one(">=", low, ROUND_FLOOR, BOUND_DIGITS, unit, rigorous, note)
+    if math.isfinite(high):
+        return _one("<=", high, ROUND_CEILING, BOUND_DIGITS, unit, rigorous, note)
+    return Written("", "", "", 0, unit, rigorous, note or "unbounded")
+
+
+def _one(
+    relation: str, value: float, rounding: str, digits: int, unit: str, rigorous: bool, note: str
+) -> Written:
+    if not math.isfinite(value):
+        return Written("", "", "", 0, unit, rigorous, note or "no bound")
+    shown = _rounded(value, digits, rounding)
+    mantissa, exponent = _layout(shown, shown)
+    return Written(relation, _trim(_plain(mantissa(shown))), "", exponent, unit, rigorous, note)
+
+
+def _rounded(value: float, digits: int, rounding: str) -> Decimal:
+    exact = Decimal(value)
+    if exact == 0:
+        return Decimal(0)
+    if rounding != ROUND_HALF_EVEN and len(Decimal(repr(value)).as_tuple().digits) <= digits:
+        return Decimal(repr(value))
+    return exact.quantize(Decimal(1).scaleb(exact.adjusted() - digits + 1), rounding, _EXACT)
+
+
+def _layout(low: Decimal, high: Decimal) -> tuple[Any, int]:
+    """Choose fixed point between 1e-4 and 1e6, else a common power of ten."""
+    largest = max(abs(low), abs(high))
+    size = largest.adjusted() if largest else 0
+    exponent = 0 if -4 <= size < 6 else size
+    return (lambda d: d.scaleb(-exponent, _EXACT)), exponent
+
+
+def _plain(value: Decimal) -> str:
+    text = f"{value:f}"
+    return "0" if not value else text
+
+
+def _trim(text: str) -> str:
+    return text.rstrip("0").rstrip(".") if "." in text else text
+
+
+def superscript(value: int) -> str:
+    """Write an integer in superscript characters."""
+    return str(value).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+
+
+def unit_text(unit: str) -> str:
+    """Write a unit with a middle dot, true exponents and no caret: "kg m^2" is "kg·m²"."""
+    out, i = "", 0
+    while i < len(unit):
+        if unit[i] == "^":
+            j = i + 1
+            while j < len(unit) and (unit[j].isdigit() or unit[j] == "-"):
+                j += 1
+            out += superscript(int(unit[i + 1 : j])) if unit[i + 1 : j].lstrip("-").isdigit() else unit[i:j]
+            i = j
+            continue
+        out += "·" if unit[i] == " " else unit[i]
+        i += 1
+    return out
