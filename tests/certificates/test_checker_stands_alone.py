@@ -1,0 +1,130 @@
+"""The checker needs nothing but Python, proves from the file alone and refuses what it cannot read."""
+
+import ast
+import json
+import subprocess
+import sys
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from intermit.verify import checker
+from intermit.verify.certificates import Certificate, certificate_text, exact_text
+
+J1 = [["3.05", "0.14", "0.05"], ["0.14", "2.66", "0.12"], ["0.05", "0.12", "2.18"]]
+
+
+def sharp(lam: str = "0.525", weight: str = "1") -> str:
+    inertia = [[Fraction(x) for x in row] for row in J1]
+    data = {"inertia": inertia, "parameters": {"lambda": Fraction(lam)}}
+    return certificate_text([Certificate("sharp-condition", data, {"weight": Fraction(weight)})])
+
+
+def edited(text: str, edit) -> str:
+    document = json.loads(text)
+    edit(document)
+    return json.dumps(document)
+
+
+def test_runs_isolated_and_without_site(tmp_path):
+    file = tmp_path / "c.json"
+    file.write_text(sharp())
+    command = [sys.executable, "-I", "-S", checker.__file__, str(file)]
+    run = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stdout + run.stderr
+    assert "VALID  sharp-condition" in run.stdout
+    assert "1 of 1 valid" in run.stdout
+    file.write_text(sharp("0.34"))
+    run = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert run.returncode == 1
+    assert "INVALID  sharp-condition" in run.stdout
+    command[-1] = str(tmp_path / "absent.json")
+    assert subprocess.run(command, capture_output=True, check=False).returncode == 2
+
+
+def test_imports_only_the_standard_library():
+    tree = ast.parse(Path(checker.__file__).read_text(encoding="utf-8"))
+    names = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            names |= {alias.name.split(".")[0] for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0
+            names.add(str(node.module).split(".")[0])
+    assert names <= set(sys.stdlib_module_names)
+
+
+@pytest.mark.parametrize(
+    ("lam", "valid"), [("0.3409", True), ("0.34090", True), ("0.3408", False), ("-0.5", False), ("0", False)]
+)
+def test_sharp_condition_is_decided_exactly(lam, valid):
+    assert [f.valid for f in checker.check_text(sharp(lam))] == [valid]
+
+
+def test_sharp_condition_holds_at_equality_and_not_a_hair_below():
+    def text(lam: Fraction) -> str:
+        inertia = [[Fraction(4 if i == j else 0) for j in range(3)] for i in range(3)]
+        data = {"inertia": inertia, "parameters": {"lambda": lam}}
+        return certificate_text([Certificate("sharp-condition", data, {"weight": 1})])
+
+    assert checker.check_text(text(Fraction(1, 4)))[0].valid
+    assert not checker.check_text(text(Fraction(1, 4) - Fraction(1, 10**40)))[0].valid
+
+
+@pytest.mark.parametrize(
+    ("edit", "reason"),
+    [
+        (lambda d: d.update(format="other"), "format"),
+        (lambda d: d.update(version="2"), "version"),
+        (lambda d: d.update(certificates=[]), "no certificate"),
+        (lambda d: d.update(extra="1"), "nothing reads"),
+        (lambda d: d["data"].update(extra="1"), "nothing reads"),
+        (lambda d: d["certificates"][0].update(kind="other"), "knows no certificate"),
+        (lambda d: d["certificates"][0]["witness"].update(extra="1"), "nothing reads"),
+        (lambda d: d["certificates"][0]["claim"].update(weight=1.5), "exact string"),
+        (lambda d: d["certificates"][0]["claim"].update(weight="1/0"), "exact number"),
+        (lambda d: d["certificates"][0]["claim"].update(weight="nan"), "exact number"),
+        (lambda d: d["certificates"][0]["claim"].update(weight="1e99999"), "exact number"),
+        (lambda d: d["certificates"][0]["claim"].update(weight=True), "exact number"),
+        (lambda d: d["certificates"][0]["claim"].update(weight=[]), "exact number"),
+        (lambda d: d["data"]["inertia"].pop(), "3 rows"),
+        (lambda d: d["data"]["inertia"][0].pop(), "3 numbers"),
+        (lambda d: d["data"]["inertia"][0].__setitem__(1, "0.15"), "symmetric"),
+        (lambda d: d.pop("data"), "missing"),
+    ],
+)
+def test_a_malformed_file_is_refused_with_the_reason(edit, reason):
+    findings = checker.check_text(edited(sharp(), edit))
+    assert not all(f.valid for f in findings)
+    assert any(reason in f.reason for f in findings)
+
+
+@pytest.mark.parametrize("text", ["", "[]", "1", "{", '{"format": 1, "format": 2}', "[" * 100000, "NaN"])
+def test_what_is_not_a_certificate_file_is_refused(text):
+    assert not any(f.valid for f in checker.check_text(text))
+
+
+def test_exact_text_is_exact():
+    for value in ("1/3", "0.1", "-12.5", "7", "-1/1024", "3.05", "0", "-0.001"):
+        assert Fraction(exact_text(Fraction(value))) == Fraction(value)
+    assert exact_text(Fraction("3.05")) == "3.05"
+    assert exact_text(Fraction(-1, 3)) == "-1/3"
+
+
+def test_certificates_must_agree_about_their_data():
+    first = Certificate("sharp-condition", {"x": 1}, {})
+    with pytest.raises(ValueError, match="disagree about x"):
+        certificate_text([first, Certificate("sharp-condition", {"x": 2}, {})])
+    with pytest.raises(TypeError, match="exact numbers"):
+        certificate_text([Certificate("sharp-condition", {"x": 0.5}, {})])
+    with pytest.raises(ValueError, match="nothing to certify"):
+        certificate_text([])
+
+
+def test_positive_semidefinite_matrices_are_told_from_others():
+    F = Fraction
+    assert checker.is_positive_semidefinite([[F(1), F(1)], [F(1), F(1)]])
+    assert not checker.is_positive_definite([[F(1), F(1)], [F(1), F(1)]])
+    assert not checker.is_positive_semidefinite([[F(0), F(1)], [F(1), F(5)]])
+    assert not checker.is_positive_semidefinite([[F(1), F(2)], [F(1), F(5)]])
+    assert checker.is_positive_semidefinite([[F(0), F(0)], [F(0), F(5)]])
