@@ -5,13 +5,18 @@ from .initial import InitialSet, InitialState
 from .laws import LawChoice
 from .scenario import Scenario, load_scenario
 from .schedules import ScheduleChoice
+from .template import TEMPLATE, example_files, write_examples, write_template
 
 __all__ = [
+    "TEMPLATE",
     "InitialSet",
     "InitialState",
     "LawChoice",
     "Scenario",
     "ScenarioError",
     "ScheduleChoice",
+    "example_files",
     "load_scenario",
+    "write_examples",
+    "write_template",
 ]
