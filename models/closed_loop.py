@@ -44,7 +44,7 @@ class Saturation:
 
 
 @final
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ClosedLoop:
     """Symbols and expressions of one closed loop.
 

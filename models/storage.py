@@ -18,7 +18,7 @@ from .laws import Expression
 
 
 @final
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Storage:
     """A storage function on a closed loop.
 

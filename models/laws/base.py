@@ -22,7 +22,7 @@ Expression = Any
 
 
 @final
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PlantSymbols:
     """The plant as a law sees it.
 
@@ -43,7 +43,7 @@ class PlantSymbols:
 
 
 @final
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class TimeSymbols:
     """Known functions of time: the gain g, its rate (1/s), and the law's own signals with their rates."""
 
@@ -64,7 +64,7 @@ class ControllerState:
 
 
 @final
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Control:
     """What a law returns.
 

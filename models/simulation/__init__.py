@@ -1,0 +1,38 @@
+"""Simulation of one run, never across a schedule knot, and the figures read off it."""
+
+from .integrate import DOP853, SimulationError, simulate
+from .metrics import (
+    Extremum,
+    Invariants,
+    TorqueMetrics,
+    filter_minimum,
+    invariants,
+    maximum,
+    minimum,
+    settling_time,
+    torque_metrics,
+)
+from .phases import Phase, phase_field, phases_between, signal_degree
+from .trajectory import Segment, Signals, Trajectory
+
+__all__ = [
+    "DOP853",
+    "Extremum",
+    "Invariants",
+    "Phase",
+    "Segment",
+    "Signals",
+    "SimulationError",
+    "TorqueMetrics",
+    "Trajectory",
+    "filter_minimum",
+    "invariants",
+    "maximum",
+    "minimum",
+    "phase_field",
+    "phases_between",
+    "settling_time",
+    "signal_degree",
+    "simulate",
+    "torque_metrics",
+]

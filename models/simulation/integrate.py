@@ -1,0 +1,160 @@
+"""One run of a closed loop, integrated phase by phase with dense output."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..closed_loop import ClosedLoop, Saturation, body_values, close_loop
+from ..laws import Law
+from ..rigid_body import RigidBody
+from ..schedule import Schedule
+from .phases import Phase, phase_field, phases_between, signal_degree
+from .trajectory import Segment, Trajectory
+
+Array = NDArray[np.float64]
+
+
+class SimulationError(RuntimeError):
+    """A run that could not be carried to its horizon: it says when it stopped and why."""
+
+
+@final
+@dataclass(frozen=True, kw_only=True)
+class DOP853:
+    """Dormand-Prince 8(5,3), scipy's, restarted at every phase.
+
+    Attributes
+    ----------
+    rtol, atol : local tolerances; the defaults keep the paper's scenario within 1e-8 relative
+        of a run at 1e-13
+    """
+
+    rtol: float = 1e-11
+    atol: float = 1e-13
+
+    def __post_init__(self) -> None:
+        if not (0 < self.rtol < 1 and self.atol > 0):
+            raise ValueError(f"tolerances must be positive: rtol {self.rtol}, atol {self.atol}")
+
+
+def simulate(
+    law: Law,
+    body: RigidBody,
+    schedule: Schedule,
+    *,
+    quaternion: ArrayLike,
+    rate: ArrayLike,
+    horizon: Fraction,
+    start: Fraction = Fraction(0),
+    saturation: Saturation | None = None,
+    method: DOP853 | None = None,
+) -> Trajectory:
+    """Simulate a law on a body through a schedule, from one state.
+
+    Parameters
+    ----------
+    quaternion : (4,), scalar first, unit; error attitude against the target
+    rate : (3,), rad/s, body frame
+    horizon : end of the run, s
+    start : start of the run, s
+    saturation : limit on the applied torque; no claim of the package covers a saturated run
+
+    Raises
+    ------
+    ValueError
+        If the quaternion is not unit to 1e-9 or the horizon is not after the start.
+    SimulationError
+        If the state leaves the numbers (an unstable law may) or the step size vanishes.
+    """
+    q = np.asarray(quaternion, dtype=float)
+    if q.shape != (4,) or abs(np.linalg.norm(q) - 1) > 1e-9:
+        raise ValueError(
+            f"the initial quaternion must be unit, shape (4,): received norm {np.linalg.norm(q)}"
+        )
+    loop = close_loop(law, saturation)
+    phases = phases_between(schedule, law, start, horizon)
+    degree = signal_degree(phases)
+    state = loop.initial_state(q, np.asarray(rate, dtype=float))
+    method = method if method is not None else DOP853()
+    field = _RightHandSide(loop, body, degree)
+    reset = _reset_map(loop)
+    segments = []
+    for phase in phases:
+        if phase.resets:
+            state = reset(state, loop.parameter_values(), body_values(body))
+        segment = _integrate_phase(field, phase, state, method)
+        segments.append(segment)
+        state = segment.end_state
+    return Trajectory(loop, body, schedule, tuple(segments), field.count)
+
+
+class _RightHandSide:
+    """Right-hand side on CasADi's own buffers: no conversion of arrays at each call."""
+
+    def __init__(self, loop: ClosedLoop, body: RigidBody, degree: int) -> None:
+        function = phase_field(loop, degree)
+        self.count = 0
+        self._tau = np.zeros(1)
+        self._state = np.zeros(loop.state.shape[0])
+        self._coefficients = np.zeros((degree + 1, loop.time.shape[0] // 2))
+        self._rate = np.zeros(loop.state.shape[0])
+        self._parameters, self._body = loop.parameter_values(), body_values(body)
+        self._degree = degree
+        # the buffer must outlive this object's calls: CasADi keeps no reference of its own
+        self._buffer, self._evaluate = function.buffer()
+        inputs = (self._tau, self._state, self._coefficients, self._parameters, self._body)
+        for i, value in enumerate(inputs):
+            self._buffer.set_arg(i, memoryview(value))
+        self._buffer.set_res(0, memoryview(self._rate))
+
+    def in_phase(self, phase: Phase) -> Callable[[float, Array], Array]:
+        """Right-hand side (t, x) -> x' with the phase's signals."""
+        # CasADi matrices are column-major, numpy's row-major: the transpose has the right layout
+        self._coefficients[...] = phase.coefficient_array(self._degree).T
+        origin = float(phase.origin)
+
+        def evaluate(t: float, x: Array) -> Array:
+            self.count += 1
+            self._tau[0] = t - origin
+            self._state[:] = x
+            self._evaluate()
+            return self._rate.copy()
+
+        return evaluate
+
+
+def _integrate_phase(field: _RightHandSide, phase: Phase, state: Array, method: DOP853) -> Segment:
+    from scipy.integrate import solve_ivp
+
+    start, end = float(phase.start), float(phase.end)
+    solution = solve_ivp(
+        field.in_phase(phase), (start, end), state, method="DOP853", rtol=method.rtol, atol=method.atol,
+        dense_output=True,
+    )  # fmt: skip
+    if not solution.success or not np.all(np.isfinite(solution.y[:, -1])):
+        raise SimulationError(f"the run stopped at t = {solution.t[-1]:.6g} s: {solution.message}")
+    return Segment(phase, solution.t, solution.y, solution.sol)
+
+
+def _reset_map(loop: ClosedLoop) -> Callable[[Array, Array, Array], Array]:
+    """New state at a reset instant, from (state, parameters, body)."""
+    import casadi as ca
+
+    changes = loop.law.reset(loop.plant, loop.controller_states, loop.parameter_symbols)
+    new = ca.SX(loop.state)
+    for i, controller in enumerate(loop.law.controller_states):
+        if controller.name in changes:
+            new[7 + i] = changes[controller.name]
+    function = ca.Function("reset", [loop.state, loop.parameters, loop.body], [new])
+
+    def apply(*values: Array) -> Array:
+        result: Any = function(*values)
+        return np.asarray(result, dtype=float).ravel()
+
+    return apply
