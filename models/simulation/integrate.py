@@ -59,11 +59,14 @@ def simulate(
 
     Parameters
     ----------
+    law, body, schedule : what is simulated
     quaternion : (4,), scalar first, unit; error attitude against the target
     rate : (3,), rad/s, body frame
-    horizon : end of the run, s
-    start : start of the run, s
+    horizon, start : end and start of the run, s
     saturation : limit on the applied torque; no claim of the package covers a saturated run
+        (the adaptive gain can even escape in finite time there: its rate grows like k^2 once
+        the torque no longer holds Omega down)
+    method : integrator and its tolerances
 
     Raises
     ------
@@ -100,6 +103,7 @@ class _RightHandSide:
     def __init__(self, loop: ClosedLoop, body: RigidBody, degree: int) -> None:
         function = phase_field(loop, degree)
         self.count = 0
+        self.state_names = loop.state_names
         self._tau = np.zeros(1)
         self._state = np.zeros(loop.state.shape[0])
         self._coefficients = np.zeros((degree + 1, loop.time.shape[0] // 2))
@@ -138,8 +142,18 @@ def _integrate_phase(field: _RightHandSide, phase: Phase, state: Array, method: 
         dense_output=True,
     )  # fmt: skip
     if not solution.success or not np.all(np.isfinite(solution.y[:, -1])):
-        raise SimulationError(f"the run stopped at t = {solution.t[-1]:.6g} s: {solution.message}")
+        raise SimulationError(_why_stopped(field.state_names, solution.t[-1], solution.y[:, -1]))
     return Segment(phase, solution.t, solution.y, solution.sol)
+
+
+def _why_stopped(names: tuple[str, ...], time: float, state: Array) -> str:
+    if not np.all(np.isfinite(state)):
+        return f"the run stopped at t = {time:.6g} s: a state is no longer a number"
+    largest = int(np.argmax(np.abs(state)))
+    return (
+        f"the run stopped at t = {time:.6g} s: the step size vanished with {names[largest]} = "
+        f"{state[largest]:.3g} (a state that escapes in finite time does this)"
+    )
 
 
 def _reset_map(loop: ClosedLoop) -> Callable[[Array, Array, Array], Array]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
+from itertools import pairwise
 from typing import Any, final
 
 import casadi as ca
@@ -71,7 +72,7 @@ def phases_between(schedule: Schedule, law: Law, start: Fraction, stop: Fraction
         signals = (piece.local_coefficients(), *(s.on_piece(schedule, piece) for s in law.signals))
         first, last = max(piece.start, start), min(piece.end, stop)
         cuts = [first, *(t for t in instants if first < t < last), last]
-        for a, b in zip(cuts, cuts[1:], strict=False):
+        for a, b in pairwise(cuts):
             result.append(Phase(a, b, piece.start, signals, resets=a in instants))
     return tuple(result)
 

@@ -1,5 +1,6 @@
 """A run obeys the closed loop's exact relations, conserves what it must, and meets its tolerance."""
 
+import itertools
 from fractions import Fraction as F
 
 import numpy as np
@@ -8,6 +9,7 @@ from intermit.models.closed_loop import Saturation
 from intermit.models.laws import AdaptiveScalingAsPrinted
 from intermit.models.simulation import (
     DOP853,
+    SimulationError,
     filter_minimum,
     invariants,
     minimum,
@@ -71,7 +73,7 @@ def test_from_rest_the_angle_follows_its_exact_law(law):
         if b > 24:
             break
         edges = np.linspace(a, b, 9)
-        for low, high in zip(edges[:-1], edges[1:], strict=True):
+        for low, high in itertools.pairwise(edges):
             t = (low + high) / 2 + (high - low) / 2 * nodes
             name = "k" if law is ADAPTIVE else "R"
             kappa = trajectory.controller_state(name, t)
@@ -121,13 +123,19 @@ def test_settling_is_the_last_time_outside():
 
 
 def test_saturation_holds_and_changes_the_run():
-    limited = run(ADAPTIVE, saturation=Saturation(F("0.5")))
+    limited = run(ADAPTIVE, saturation=Saturation(F("1.5")))
     assert limited.is_saturated_model
     t = limited.grid()
-    assert np.abs(limited.signals(t).applied_torque).max() <= 0.5 + 1e-12
-    assert np.abs(run(ADAPTIVE).signals(t).applied_torque).max() > 0.5
-    euclidean = run(ADAPTIVE, saturation=Saturation(F("0.5"), "euclidean"))
-    assert np.linalg.norm(euclidean.signals(t).applied_torque, axis=0).max() <= 0.5 + 1e-12
+    assert np.abs(limited.signals(t).applied_torque).max() <= 1.5 + 1e-12
+    assert np.abs(run(ADAPTIVE).signals(t).applied_torque).max() > 1.5
+    euclidean = run(ADAPTIVE, saturation=Saturation(F(3), "euclidean"))
+    assert np.linalg.norm(euclidean.signals(t).applied_torque, axis=0).max() <= 3 + 1e-12
+
+
+def test_escape_under_tight_saturation_is_an_error_that_names_the_state():
+    """With the torque held at 0.5 N m the adaptive gain runs away like k' ~ k^2."""
+    with pytest.raises(SimulationError, match=r"stopped at t = 9\.78.* k = "):
+        run(ADAPTIVE, saturation=Saturation(F("0.5")))
 
 
 def test_filter_minimum_is_below_every_sample():
