@@ -114,8 +114,8 @@ class _RightHandSide:
         self._buffer, self._evaluate = function.buffer()
         inputs = (self._tau, self._state, self._coefficients, self._parameters, self._body)
         for i, value in enumerate(inputs):
-            self._buffer.set_arg(i, memoryview(value))
-        self._buffer.set_res(0, memoryview(self._rate))
+            self._buffer.set_arg(i, value.data)
+        self._buffer.set_res(0, self._rate.data)
 
     def in_phase(self, phase: Phase) -> Callable[[float, Array], Array]:
         """Right-hand side (t, x) -> x' with the phase's signals."""

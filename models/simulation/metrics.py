@@ -127,9 +127,8 @@ def settling_time(trajectory: Trajectory, *, attitude: float, rate: float) -> fl
 
     def excess(t: Array) -> Array:
         x = trajectory.state(t)
-        return (
-            np.maximum(np.linalg.norm(x[1:4], axis=0) / attitude, np.linalg.norm(x[4:7], axis=0) / rate) - 1
-        )
+        angle, speed = np.linalg.norm(x[1:4], axis=0), np.linalg.norm(x[4:7], axis=0)
+        return np.asarray(np.maximum(angle / attitude, speed / rate) - 1)
 
     grid = trajectory.grid()
     outside = np.flatnonzero(excess(grid) > 0)
