@@ -1,23 +1,12 @@
-"""The command line: words in, words and exit codes out."""
+"""The command line: words in, words and exit codes out.
+
+One file per command; `COMMANDS` lists them in the order of the help page. A command's file holds
+one function `run`, whose arguments are its options and whose docstring is its help; what it needs
+of the package it imports inside, so that `intermit --help` loads nothing heavy.
+"""
 
 from __future__ import annotations
 
-import typer
+from .app import main
 
-app = typer.Typer(
-    name="intermit",
-    help="Check, optimise and report attitude control through thruster windows.",
-    no_args_is_help=True,
-    add_completion=False,
-    pretty_exceptions_enable=False,
-)
-
-
-@app.callback()
-def _root() -> None:
-    """Check, optimise and report attitude control through thruster windows."""
-
-
-def main() -> None:
-    """Run the command line."""
-    app()
+__all__ = ["main"]

@@ -1,0 +1,42 @@
+"""Options and arguments that several commands share, spelled once."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, final
+
+import typer
+
+
+@final
+class InputError(ValueError):
+    """What the user asked for cannot be done as asked: one line, exit code 2."""
+
+
+@final
+class _Debugging:
+    """Whether an error shows its traceback."""
+
+    on = False
+
+
+debugging = _Debugging()
+
+
+def _remember(asked: bool) -> bool:
+    debugging.on = debugging.on or asked
+    return asked
+
+
+Debug = Annotated[
+    bool,
+    typer.Option("--debug", callback=_remember, is_eager=True, help="Show the traceback of an error."),
+]
+ScenarioFile = Annotated[Path, typer.Argument(metavar="SCENARIO.toml", help="Scenario file.")]
+ScenarioFiles = Annotated[
+    list[Path], typer.Argument(metavar="SCENARIO.toml [...]", help="One scenario, or several side by side.")
+]
+JsonFile = Annotated[
+    Path | None,
+    typer.Option("--json", metavar="FILE", help="Write the whole record to FILE (arrays beside it, .npz)."),
+]
