@@ -4,9 +4,9 @@
 
 A certificate file is JSON, every number in it an exact string ("p/q" or a decimal):
 
-    {"format": "intermit-certificate", "version": "1",
-     "data": {...},                                what the claims speak about
-     "certificates": [{"kind": ..., "claim": {...}, "witness": {...}}, ...]}
+    {"format": "intermit-certificate", "version": "1", "parts": [
+      {"data": {...},                               what the claims of this part speak about
+       "certificates": [{"kind": ..., "claim": {...}, "witness": {...}}, ...]}, ...]}
 
 The checker proves each claim anew from the file alone: what a certificate says of itself counts
 for nothing, and a field that no proof reads makes the file invalid. It prints each claim with
@@ -227,11 +227,13 @@ def check_text(text: str) -> list[Finding]:
         file = parse(text)
         require(file["format"].text() == FORMAT, f"the format must be {FORMAT!r}")
         require(file["version"].text() == VERSION, f"this checker reads version {VERSION!r}")
-        data, certificates = file["data"], file["certificates"].items()
-        require(bool(certificates), "there is no certificate in the file")
+        pairs = [
+            (part["data"], one) for part in file["parts"].items() for one in part["certificates"].items()
+        ]
+        require(bool(pairs), "there is no certificate in the file")
     except Invalid as error:
         return [Finding("file", False, (), str(error))]
-    findings = [_check_one(data, certificate) for certificate in certificates]
+    findings = [_check_one(data, certificate) for data, certificate in pairs]
     stray = list(file.unread())
     if stray and all(finding.valid for finding in findings):
         reason = f"nothing reads {', '.join(stray[:5])}"

@@ -76,21 +76,21 @@ def test_sharp_condition_holds_at_equality_and_not_a_hair_below():
     [
         (lambda d: d.update(format="other"), "format"),
         (lambda d: d.update(version="2"), "version"),
-        (lambda d: d.update(certificates=[]), "no certificate"),
+        (lambda d: d["parts"][0].update(certificates=[]), "no certificate"),
         (lambda d: d.update(extra="1"), "nothing reads"),
-        (lambda d: d["data"].update(extra="1"), "nothing reads"),
-        (lambda d: d["certificates"][0].update(kind="other"), "knows no certificate"),
-        (lambda d: d["certificates"][0]["witness"].update(extra="1"), "nothing reads"),
-        (lambda d: d["certificates"][0]["claim"].update(weight=1.5), "exact string"),
-        (lambda d: d["certificates"][0]["claim"].update(weight="1/0"), "exact number"),
-        (lambda d: d["certificates"][0]["claim"].update(weight="nan"), "exact number"),
-        (lambda d: d["certificates"][0]["claim"].update(weight="1e99999"), "exact number"),
-        (lambda d: d["certificates"][0]["claim"].update(weight=True), "exact number"),
-        (lambda d: d["certificates"][0]["claim"].update(weight=[]), "exact number"),
-        (lambda d: d["data"]["inertia"].pop(), "3 rows"),
-        (lambda d: d["data"]["inertia"][0].pop(), "3 numbers"),
-        (lambda d: d["data"]["inertia"][0].__setitem__(1, "0.15"), "symmetric"),
-        (lambda d: d.pop("data"), "missing"),
+        (lambda d: d["parts"][0]["data"].update(extra="1"), "nothing reads"),
+        (lambda d: d["parts"][0]["certificates"][0].update(kind="other"), "knows no certificate"),
+        (lambda d: d["parts"][0]["certificates"][0]["witness"].update(extra="1"), "nothing reads"),
+        (lambda d: d["parts"][0]["certificates"][0]["claim"].update(weight=1.5), "exact string"),
+        (lambda d: d["parts"][0]["certificates"][0]["claim"].update(weight="1/0"), "exact number"),
+        (lambda d: d["parts"][0]["certificates"][0]["claim"].update(weight="nan"), "exact number"),
+        (lambda d: d["parts"][0]["certificates"][0]["claim"].update(weight="1e99999"), "exact number"),
+        (lambda d: d["parts"][0]["certificates"][0]["claim"].update(weight=True), "exact number"),
+        (lambda d: d["parts"][0]["certificates"][0]["claim"].update(weight=[]), "exact number"),
+        (lambda d: d["parts"][0]["data"]["inertia"].pop(), "3 rows"),
+        (lambda d: d["parts"][0]["data"]["inertia"][0].pop(), "3 numbers"),
+        (lambda d: d["parts"][0]["data"]["inertia"][0].__setitem__(1, "0.15"), "symmetric"),
+        (lambda d: d["parts"][0].pop("data"), "missing"),
     ],
 )
 def test_a_malformed_file_is_refused_with_the_reason(edit, reason):
@@ -111,10 +111,18 @@ def test_exact_text_is_exact():
     assert exact_text(Fraction(-1, 3)) == "-1/3"
 
 
-def test_certificates_must_agree_about_their_data():
-    first = Certificate("sharp-condition", {"x": 1}, {})
-    with pytest.raises(ValueError, match="disagree about x"):
-        certificate_text([first, Certificate("sharp-condition", {"x": 2}, {})])
+def test_certificates_share_a_part_where_their_data_agree():
+    first = Certificate("a", {"x": 1, "p": {"u": 1}}, {})
+    second = Certificate("b", {"y": 1, "p": {"v": 1}}, {})
+    third = Certificate("c", {"p": {"u": 2}}, {})
+    parts = json.loads(certificate_text([first, second, third]))["parts"]
+    assert [part["data"] for part in parts] == [
+        {"x": "1", "y": "1", "p": {"u": "1", "v": "1"}},
+        {"p": {"u": "2"}},
+    ]
+
+
+def test_a_file_needs_a_certificate_and_exact_numbers():
     with pytest.raises(TypeError, match="exact numbers"):
         certificate_text([Certificate("sharp-condition", {"x": 0.5}, {})])
     with pytest.raises(ValueError, match="nothing to certify"):

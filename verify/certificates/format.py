@@ -1,7 +1,7 @@
 """The certificate file: JSON with every number an exact string.
 
-What is in a file: `data`, what the claims speak about (shared by all of them), and a list of
-certificates, each with its kind, its claim and the witness that makes checking it plain algebra.
+A file has parts; a part has `data`, what its claims speak about, and a list of certificates,
+each with its kind, its claim and the witness that makes checking it plain algebra.
 The checker (`verify/checker.py`) reads every field or refuses the file.
 """
 
@@ -28,7 +28,7 @@ class Certificate:
     kind : str
         Which check of the stand-alone checker proves it.
     data : mapping
-        What it speaks about: goes into the file's shared data, where entries of one name must agree.
+        What it speaks about; certificates whose data agree share a part of the file.
     claim, witness : mapping
         What is claimed, and what makes checking it algebra. Numbers are Fraction, int or Decimal.
     """
@@ -70,22 +70,46 @@ def as_text(value: Any) -> Any:
 
 
 def certificate_text(certificates: Iterable[Certificate]) -> str:
-    """Text of a certificate file.
+    """Text of a certificate file; certificates whose data agree share one part of it.
 
     Raises
     ------
     ValueError
-        If two certificates disagree about an entry of their data, or if there is none.
+        If there is no certificate.
+    TypeError
+        If a number is not exact.
     """
-    data: dict[str, Any] = {}
-    entries: list[dict[str, Any]] = []
+    parts: list[dict[str, Any]] = []
     for certificate in certificates:
-        for key, value in as_text(certificate.data).items():
-            if data.setdefault(key, value) != value:
-                raise ValueError(f"certificates disagree about {key}: write them to separate files")
         claim, witness = as_text(certificate.claim), as_text(certificate.witness)
-        entries.append({"kind": certificate.kind, "claim": claim, "witness": witness})
-    if not entries:
+        entry = {"kind": certificate.kind, "claim": claim, "witness": witness}
+        data = as_text(certificate.data)
+        home = next((part for part in parts if _agree(part["data"], data)), None)
+        if home is None:
+            home = {"data": {}, "certificates": []}
+            parts.append(home)
+        _merge(home["data"], data)
+        home["certificates"].append(entry)
+    if not parts:
         raise ValueError("there is nothing to certify")
-    document = {"format": FORMAT, "version": VERSION, "data": data, "certificates": entries}
-    return json.dumps(document, indent=1) + "\n"
+    return json.dumps({"format": FORMAT, "version": VERSION, "parts": parts}, indent=1) + "\n"
+
+
+def _agree(known: Mapping[str, Any], more: Mapping[str, Any]) -> bool:
+    """Whether two nested mappings give no entry two values."""
+    for key in known.keys() & more.keys():
+        both = known[key], more[key]
+        if isinstance(both[0], dict) and isinstance(both[1], dict):
+            if not _agree(*both):
+                return False
+        elif both[0] != both[1]:
+            return False
+    return True
+
+
+def _merge(known: dict[str, Any], more: Mapping[str, Any]) -> None:
+    for key, value in more.items():
+        if isinstance(value, dict):
+            _merge(known.setdefault(key, {}), value)
+        else:
+            known[key] = value
