@@ -1,0 +1,101 @@
+"""Gradient search for the least margin of V', from the worst samples and from copies of them near rest."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .domain import SampledDomain
+from .function import DerivativeFunction
+
+Array = NDArray[np.float64]
+Margin = Literal["rate", "bound"]
+
+BARRIER = 1e-10
+"""Added to the margin's numerator in the search, so that it keeps off the equilibrium, where the margin
+is 0/0: there W is about 1e-5 and 1 - b0 still has ten digits."""
+SHRINK = 0.1
+"""Near the equilibrium V' and W are both quadratic: a worst direction found far away is tried there too."""
+ITERATIONS = 100
+
+
+@final
+@dataclass(frozen=True)
+class Refinement:
+    """The least margin found, 1/s, its coordinates (b0..b3, Omega, controller, g, g') and the effort."""
+
+    value: float
+    coordinates: Array
+    evaluations: int
+
+
+def refine(
+    check: DerivativeFunction,
+    domain: SampledDomain,
+    uniform: tuple[Array, Array, Array],
+    starts: Array,
+    margin: Margin,
+) -> Refinement:
+    """Minimise -V'/W, or (bound - V')/W, over the domain.
+
+    Parameters
+    ----------
+    uniform : parameters, body and extra arguments of `check.function`
+    starts : (m, n) coordinates; they must lie in the domain
+    """
+    from scipy.optimize import minimize
+
+    objective, gradient, margin_of = _objective(check, margin)
+    low, high = domain.bounds()
+    limits = [(-2.0, 2.0)] * 4 + list(zip(low.tolist(), high.tolist(), strict=True))
+    best, where, evaluations = np.inf, starts[0], 0
+    for start in np.vstack([starts, _shrunk(starts)]):
+        found = minimize(
+            lambda z: (float(objective(z, *uniform)), np.asarray(gradient(z, *uniform)).ravel()),
+            start,
+            jac=True,
+            method="L-BFGS-B",
+            bounds=limits,
+            options={"maxiter": ITERATIONS},
+        )
+        evaluations += int(found.nfev)
+        for point in (_unit(start), _unit(found.x)):
+            value = float(objective(point, *uniform))
+            if value < best:
+                best, where = value, point
+    return Refinement(float(margin_of(where, *uniform)), where, evaluations)
+
+
+def _shrunk(starts: Array) -> Array:
+    copies = starts.copy()
+    copies[:, 1:7] *= SHRINK
+    copies[:, 0] = np.sqrt(1 - np.sum(copies[:, 1:4] ** 2, axis=1))
+    return copies
+
+
+def _unit(point: Array) -> Array:
+    unit = np.array(point, dtype=float)
+    unit[:4] /= np.linalg.norm(unit[:4])
+    return unit
+
+
+def _objective(check: DerivativeFunction, margin: Margin) -> tuple[Any, Any, Any]:
+    """The margin with its barrier, its gradient, and the margin itself; attitudes are normalised."""
+    import casadi as ca
+
+    function = check.function
+    point = ca.SX.sym("z", function.size1_in(0))
+    others = [ca.SX.sym(f"u{i}", function.size1_in(i)) for i in (1, 2, 3)]
+    unit = ca.vertcat(point[:4] / ca.norm_2(point[:4]), point[4:])
+    rate, storage, bound, *_ = function(unit, *others)
+    gap = -rate if margin == "rate" else bound - rate
+    value = (gap + BARRIER) / storage
+    arguments = [point, *others]
+    return (
+        ca.Function("objective", arguments, [value]),
+        ca.Function("gradient", arguments, [ca.gradient(value, point)]),
+        ca.Function("margin_of", arguments, [gap / storage]),
+    )
