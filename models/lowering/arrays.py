@@ -8,6 +8,7 @@ correctly rounded operation, results are bit-identical to CasADi's own evaluatio
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, final
 
@@ -21,24 +22,8 @@ Array = NDArray[np.float64]
 BLOCK = 4096
 """Samples a block: a program's live buffers (some forty of 32 kB) stay in the second-level cache."""
 
-EXACT = frozenset(
-    {
-        "assign",
-        "add",
-        "sub",
-        "mul",
-        "div",
-        "neg",
-        "sq",
-        "twice",
-        "inv",
-        "sqrt",
-        "fabs",
-        "copysign",
-        "floor",
-        "ceil",
-    }
-    | {"fmin", "fmax"}
+EXACT = frozenset(["assign", "add", "sub", "mul", "div", "neg", "sq", "twice", "inv", "sqrt"]) | frozenset(
+    ["fabs", "copysign", "floor", "ceil", "fmin", "fmax"]
 )
 """Operations numpy and CasADi round identically."""
 
@@ -129,7 +114,7 @@ class ArrayFunction:
         self.is_exact = program.operations <= EXACT
         plan = _Plan(program, self.uniform)
         self.buffer_count, self.sample_operations = plan.buffer_count, len(plan.body)
-        self._buffers = np.empty((plan.buffer_count, block))
+        self._local = threading.local()
         self._once, self._body = _compile(program.name, plan)
         self._result_sizes = tuple(len(row) for row in program.results)
 
@@ -141,7 +126,7 @@ class ArrayFunction:
         return results
 
     def into(self, arguments: Sequence[Array], results: Sequence[Array]) -> None:
-        """Evaluate into existing (m_j, N) arrays; nothing of size N is allocated."""
+        """Evaluate into existing (m_j, N) arrays, apart from the arguments; allocates nothing of size N."""
         rows, count = self._check(arguments)
         if [r.shape for r in results] != [(size, count) for size in self._result_sizes]:
             raise ValueError(
@@ -149,10 +134,26 @@ class ArrayFunction:
                 f"{[(size, count) for size in self._result_sizes]}, received {[r.shape for r in results]}"
             )
         with np.errstate(all="ignore"):
-            known = self._once(*rows)
-            for start in range(0, count, self.block):
-                stop = min(start + self.block, count)
-                self._body(rows, results, self._buffers[:, : stop - start], known, start, stop)
+            self.run_blocks(rows, results, self.known(rows), count)
+
+    def known(self, rows: Sequence[Array]) -> tuple[Array, ...]:
+        """Values that depend on uniform arguments only: the same for every later `run_blocks` on them."""
+        return tuple(np.asarray(value) for value in self._once(*rows))
+
+    def run_blocks(
+        self, rows: Sequence[Array], results: Sequence[Array], known: tuple[Array, ...], count: int
+    ) -> None:
+        """Evaluate without any check, for inner loops: float rows, results and `known` values must fit."""
+        for start in range(0, count, self.block):
+            stop = min(start + self.block, count)
+            self._body(rows, results, self._buffers(stop - start), known, start, stop)
+
+    def _buffers(self, count: int) -> Array:
+        """Buffers of the calling thread, packed for `count` samples (a power-of-two stride would thrash)."""
+        memory: Array | None = getattr(self._local, "memory", None)
+        if memory is None:
+            self._local.memory = memory = np.empty(self.buffer_count * self.block)
+        return memory[: self.buffer_count * count].reshape(self.buffer_count, count)
 
     def stream(self, blocks: Iterable[Sequence[Array]]) -> Iterator[list[Array]]:
         """Results of each block of arguments in turn; they are overwritten by the next block.
@@ -203,6 +204,9 @@ class _Plan:
                 self._varying.add(v)
                 self.text[v] = f"x{v}"
         self._last = program.last_uses()
+        self._place_of: dict[int, tuple[int, int]] = {}
+        for j, row in enumerate(program.results):
+            self._place_of.update({v: (j, e) for e, v in enumerate(row) if v is not None})
         for i, step in enumerate(program.steps):
             self._place(i, step.operation, step.result, step.operands)
 
@@ -221,11 +225,15 @@ class _Plan:
         for o in {o for o in operands if self._last[o] == i}:
             if o in self._held:
                 self._free.append(self._held.pop(o))
-        if not self._free:
-            self._free.append(self.buffer_count)
-            self.buffer_count += 1
-        self._held[result] = self._free.pop()
-        self.text[result] = out = f"b{self._held[result]}"
+        if result in self._place_of:
+            j, e = self._place_of[result]
+            self.text[result] = out = f"r{j}_{e}"
+        else:
+            if not self._free:
+                self._free.append(self.buffer_count)
+                self.buffer_count += 1
+            self._held[result] = self._free.pop()
+            self.text[result] = out = f"b{self._held[result]}"
         self.body.append(_EMIT[operation].format(*used, out=out))
 
     def source(self) -> str:
@@ -239,10 +247,14 @@ class _Plan:
         for v, (a, e) in program.inputs.items():
             if v in used and self.text[v].startswith("x"):
                 body.append(f"    x{v} = rows[{a}][{e}, start:stop]")
+        written = set(self.text.values())
+        places = [(j, e) for j, row in enumerate(program.results) for e in range(len(row))]
+        body += [f"    r{j}_{e} = results[{j}][{e}, start:stop]" for j, e in places if f"r{j}_{e}" in written]
         body += [f"    {line}" for line in self.body]
-        for j, row in enumerate(program.results):
-            for e, value in enumerate(row):
-                text = "0.0" if value is None else self.text[value]
+        for j, e in places:
+            value = program.results[j][e]
+            text = "0.0" if value is None else self.text[value]
+            if text != f"r{j}_{e}":
                 body.append(f"    results[{j}][{e}, start:stop] = {text}")
         return "\n".join([*once, *body, ""])
 
