@@ -66,7 +66,7 @@ class Step:
     def at(self, x: Array) -> Array:
         """States (m, p, n) at the fractions x (m, p) or (p,) of the steps."""
         fractions = np.broadcast_to(x, (self.runs.size, x.shape[-1]))
-        values = np.matmul(_basis(fractions), self.coefficients)
+        values: Array = np.matmul(_basis(fractions), self.coefficients)
         values += self.states[:, None, :]
         return values
 
