@@ -13,7 +13,10 @@ import typer
 from .exit_codes import HELP, ExitCode
 from .options import Debug, InputError, debugging
 
-COMMANDS: tuple[str, ...] = ()
+COMMANDS = (
+    "init",
+    "check",
+)
 """Modules of this room that are commands, in the order of the help page; `_` is spelled `-`."""
 
 INPUT_ERRORS = frozenset({"ScenarioError", "RecordError", "CertificateError"})

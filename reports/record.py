@@ -111,9 +111,14 @@ class Record:
 def write_record(record: Record, folder: str | Path) -> Path:
     """Write `results.json` and `results.npz` into an existing folder; returns the path of the first."""
     target = Path(folder) / DOCUMENT_NAME
-    _replace(Path(folder) / ARRAYS_NAME, arrays_bytes(record.arrays))
-    _replace(target, record.to_json().encode())
+    write_record_to(record, target)
     return target
+
+
+def write_record_to(record: Record, path: str | Path) -> None:
+    """Write the document to `path` and its arrays beside it, with the suffix .npz."""
+    _replace(Path(path).with_suffix(".npz"), arrays_bytes(record.arrays))
+    _replace(Path(path), record.to_json().encode())
 
 
 def read_record(path: str | Path) -> Record:

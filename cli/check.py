@@ -1,0 +1,53 @@
+"""`intermit check`."""
+
+from __future__ import annotations
+
+from time import perf_counter
+from typing import Annotated
+
+import typer
+
+from .options import Debug, InputError, JsonFile, ScenarioFiles
+
+
+def run(
+    scenarios: ScenarioFiles,
+    json: JsonFile = None,
+    simulate: Annotated[
+        bool, typer.Option("--simulate/--no-simulate", help="Run every law from the initial state too.")
+    ] = True,
+    margins: Annotated[
+        bool, typer.Option("--margins/--no-margins", help="Look for how far the schedule may change.")
+    ] = True,
+    debug: Debug = False,
+) -> int:
+    """Check a schedule and its laws: one verdict a condition, with its numbers and margin.
+
+    Give several scenarios to see them side by side.
+    """
+    del debug
+    from ..scenario import load_scenario
+    from ..study.check import CheckOptions, run_check
+    from ..study.counting import exit_code
+    from .check_page import print_check
+    from .console import note, output, progress
+
+    began = perf_counter()
+    if json is not None and len(scenarios) > 1:
+        raise InputError("--json writes one record: give one scenario")
+    loaded = [load_scenario(path) for path in scenarios]
+    for scenario in loaded:
+        for warning in scenario.warnings:
+            note(f"warning: {warning}")
+    options, studies = CheckOptions(simulate=simulate, margins=margins), []
+    for scenario in loaded:
+        with progress(scenario.name) as step:
+            studies.append(run_check(scenario, options, step))
+    print_check(output(), studies)
+    if json is not None:
+        from ..reports.record import write_record_to
+        from ..study.check_record import check_record
+
+        write_record_to(check_record(studies[0]), json)
+    note(f"{perf_counter() - began:.1f} s")
+    return exit_code(claim for study in studies for claim in study.all_claims)

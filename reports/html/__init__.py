@@ -1,3 +1,0 @@
-"""One self-contained HTML page: no network, figures to zoom, bodies to turn."""
-
-from .page import html_page as html_page

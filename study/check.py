@@ -1,0 +1,109 @@
+"""The main job: a scenario in, every claim about it out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import final
+
+from ..scenario import Scenario
+from ..verify.schedule_facts import schedule_claims
+from ..verify.verdict import Claim
+from .case import Case, check_case
+from .counting import count, counted_keys, exit_code, sentence
+
+Progress = Callable[[str, float], None]
+
+
+@final
+@dataclass(frozen=True, kw_only=True)
+class CheckOptions:
+    """What a check does beyond its claims.
+
+    Attributes
+    ----------
+    simulate : run every law from the initial state
+    margins : look for how far the schedule may change before a claim flips
+    """
+
+    simulate: bool = True
+    margins: bool = True
+
+
+@final
+@dataclass(frozen=True)
+class CheckStudy:
+    """Everything a check found.
+
+    Attributes
+    ----------
+    claims : about the schedule, whatever the law
+    cases : one for each law, in the scenario's order
+    """
+
+    scenario: Scenario
+    claims: tuple[Claim, ...]
+    cases: tuple[Case, ...]
+
+    @property
+    def all_claims(self) -> tuple[Claim, ...]:
+        """Claims about the schedule, then those about each law."""
+        return self.claims + tuple(claim for case in self.cases for claim in case.claims)
+
+    @property
+    def exit_code(self) -> int:
+        """0, 1 or 3 by the counted claims."""
+        return exit_code(self.all_claims)
+
+    @property
+    def sentence(self) -> str:
+        """The outcome in one sentence."""
+        return sentence(self.all_claims)
+
+
+def run_check(
+    scenario: Scenario, options: CheckOptions | None = None, progress: Progress | None = None
+) -> CheckStudy:
+    """Check a scenario: its schedule, then each of its laws, and simulate each law.
+
+    Raises
+    ------
+    ScenarioError
+        If the scenario asks for a claim that does not exist, or a law cannot be built.
+    """
+    options = options if options is not None else CheckOptions()
+    tell = progress if progress is not None else _silent
+    counted_keys(scenario)
+    tell("schedule", 0.0)
+    schedule = count(scenario_claims(scenario), scenario)
+    cases = []
+    for i, choice in enumerate(scenario.laws):
+        part = _Part(tell, choice.label, 0.05 + 0.95 * i / len(scenario.laws), 0.95 / len(scenario.laws))
+        case = check_case(scenario, choice, simulate=options.simulate, progress=part)
+        cases.append(replace(case, claims=count(case.claims, scenario)))
+    tell("done", 1.0)
+    return CheckStudy(scenario, schedule, tuple(cases))
+
+
+def scenario_claims(scenario: Scenario) -> tuple[Claim, ...]:
+    """Claims about the schedule alone."""
+    choice = scenario.schedule_choice
+    return schedule_claims(choice.schedule, overruns_as_printed=choice.overruns_as_printed)
+
+
+@final
+@dataclass(frozen=True)
+class _Part:
+    """Progress of one law as part of the whole."""
+
+    tell: Progress
+    label: str
+    start: float
+    width: float
+
+    def __call__(self, stage: str, fraction: float) -> None:
+        self.tell(f"{self.label}: {stage}", self.start + self.width * fraction)
+
+
+def _silent(stage: str, fraction: float) -> None:
+    del stage, fraction

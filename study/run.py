@@ -1,0 +1,149 @@
+"""One simulated run of a scenario's law and the figures read off it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..models.closed_loop import Saturation
+from ..models.laws import Law
+from ..models.simulation import (
+    Extremum,
+    Invariants,
+    SimulationError,
+    TorqueMetrics,
+    Trajectory,
+    filter_minimum,
+    invariants,
+    settling_time,
+    simulate,
+    torque_metrics,
+)
+from ..reports import parts
+from ..scenario import Scenario
+
+Array = NDArray[np.float64]
+
+
+@final
+@dataclass(frozen=True)
+class Run:
+    """A run to the scenario's horizon.
+
+    Attributes
+    ----------
+    trajectory : None if the run stopped before the horizon; then `failure` says where and why
+    settling : s; None if the run ends outside the tolerances
+    torque : peaks and impulse over the whole run
+    filter_floor : least R of this run, None for a law without a filter
+    """
+
+    trajectory: Trajectory | None
+    settling: float | None = None
+    torque: TorqueMetrics | None = None
+    filter_floor: Extremum | None = None
+    drift: Invariants | None = None
+    failure: str = ""
+
+
+def run_law(scenario: Scenario, law: Law) -> Run:
+    """Simulate a law from the scenario's initial state to its horizon."""
+    saturation = None
+    if scenario.simulation.saturate and scenario.limits is not None:
+        saturation = Saturation(scenario.limits.torque, scenario.limits.norm)
+    try:
+        trajectory = simulate(
+            law,
+            scenario.body,
+            scenario.schedule,
+            quaternion=scenario.initial.quaternion,
+            rate=scenario.initial.rate,
+            horizon=scenario.horizon,
+            saturation=saturation,
+        )
+    except SimulationError as error:
+        return Run(None, failure=str(error))
+    tolerance = scenario.tolerance
+    has_filter = "R" in trajectory.loop.controller_states
+    return Run(
+        trajectory,
+        settling_time(trajectory, attitude=float(tolerance.attitude), rate=float(tolerance.rate)),
+        torque_metrics(trajectory),
+        filter_minimum(trajectory) if has_filter else None,
+        invariants(trajectory),
+    )
+
+
+def metrics(run: Run) -> list[dict[str, Any]]:
+    """Figures of a run as quantities of the record; the simulation is good to 8 digits, 6 are shown."""
+    if run.trajectory is None or run.torque is None or run.drift is None:
+        return []
+    torque, out = run.torque, []
+    if run.settling is None:
+        out.append(parts.quantity("settling_time", None, unit="s", note="not settled within the horizon"))
+    else:
+        out.append(_figure("settling_time", run.settling, "s"))
+    out += [
+        _figure("peak_torque_component", torque.peak_component.value, "N m"),
+        _figure("peak_torque_euclidean", torque.peak_euclidean.value, "N m"),
+        _figure("peak_command_component", torque.peak_commanded_component.value, "N m"),
+        _figure("peak_command_euclidean", torque.peak_commanded_euclidean.value, "N m"),
+        _figure("impulse", torque.impulse, "N m s"),
+    ]
+    if run.filter_floor is not None:
+        out.append(_figure("least_filter_state", run.filter_floor.value, "s"))
+    out.append(parts.quantity("quaternion_norm_drift", 0.0, run.drift.quaternion_norm, side="upper"))
+    out.append(parts.quantity("free_momentum_drift", 0.0, run.drift.free_momentum, side="upper"))
+    return out
+
+
+def _figure(name: str, value: float, unit: str) -> dict[str, Any]:
+    return parts.figure_of(name, value, digits=6, unit=unit)
+
+
+def run_entry(scenario: Scenario, run: Run, key: str, label: str) -> tuple[dict[str, Any], dict[str, Array]]:
+    """A run as the record's mapping and its arrays, on the scenario's output grid."""
+    assert run.trajectory is not None
+    trajectory = run.trajectory
+    times = output_times(scenario)
+    states, signals = trajectory.state(times), trajectory.signals(times)
+    arrays = {
+        f"{key}.time": times,
+        f"{key}.quaternion": states[:4].T,
+        f"{key}.rate": states[4:7].T,
+        f"{key}.command": signals.commanded_torque.T,
+        f"{key}.torque": signals.applied_torque.T,
+        f"{key}.gain": signals.gain,
+        f"{key}.error_rate": signals.augmented_rate.T,
+    }
+    roles: dict[str, Any] = {name.removeprefix(f"{key}."): name for name in arrays}
+    controller = trajectory.loop.state_names[7:]
+    if controller:
+        roles["controller"] = {name: f"{key}.controller.{name}" for name in controller}
+        arrays |= {f"{key}.controller.{name}": states[7 + i] for i, name in enumerate(controller)}
+    notes = [f"The run covers [0, {float(scenario.horizon):g}] s."]
+    if trajectory.is_saturated_model:
+        notes.append("The torque was limited in this run: no claim covers a saturated run.")
+    entry = {
+        "key": key,
+        "label": label,
+        "metrics": metrics(run),
+        "arrays": roles,
+        "saturated": trajectory.is_saturated_model,
+        "effort": [{"label": "right-hand sides", "count": int(trajectory.evaluations)}],
+        "notes": notes,
+    }
+    return entry, arrays
+
+
+def output_times(scenario: Scenario) -> Array:
+    """Times of the histories: every output step from 0 to the horizon, which is always the last, s."""
+    step, horizon = scenario.simulation.output_step, scenario.horizon
+    count = int(horizon / step)
+    times = [float(step * i) for i in range(count + 1)]
+    if step * count < horizon:
+        times.append(float(horizon))
+    return np.array(times)

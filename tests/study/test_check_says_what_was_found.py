@@ -1,0 +1,146 @@
+"""`intermit check` prints the verdicts first and writes a record that says the same."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from intermit.reports.record import read_record
+
+Run = Callable[..., tuple[int, str, str]]
+Write = Callable[..., Path]
+
+NEVER = ("cvxpy", "matplotlib", "jinja2", "typst")
+
+
+def claims_of(record: Path, law: int = 0) -> dict[str, dict[str, object]]:
+    document = json.loads(record.read_text())
+    sections = document["sections"]
+    found = sections["schedule"]["claims"] + sections["cases"][law]["claims"]
+    return {claim["key"]: claim for claim in found}
+
+
+def test_record_is_whole_and_its_outcome_is_the_exit_code(
+    intermit: Run, write_scenario: Write, tmp_path: Path
+) -> None:
+    out = tmp_path / "found.json"
+    code, text, _ = intermit("check", write_scenario(), "--json", out)
+    record = read_record(out)
+    assert record.document["outcome"]["exit_code"] == code
+    assert record.document["outcome"]["sentence"] in text
+    assert len(record.sections["cases"]) == 3
+
+
+def test_same_scenario_same_bytes(intermit: Run, write_scenario: Write, tmp_path: Path) -> None:
+    scenario = write_scenario()
+    for name in ("a", "b"):
+        intermit("check", scenario, "--json", tmp_path / f"{name}.json")
+    for suffix in (".json", ".npz"):
+        first, second = ((tmp_path / name).with_suffix(suffix).read_bytes() for name in ("a", "b"))
+        assert first == second
+
+
+def test_smaller_lambda_refutes_the_sign_of_v_but_not_the_convergence_of_the_laws(
+    intermit: Run, write_scenario: Write, tmp_path: Path
+) -> None:
+    out = tmp_path / "found.json"
+    intermit("check", write_scenario(base="paper-smaller-lambda.toml"), "--json", out)
+    claims = claims_of(out)
+    assert claims["lyapunov.derivative"]["verdict"] == "REFUTED"
+    assert claims["lyapunov.derivative"]["counted"] is False
+
+
+def test_printed_update_is_refuted_with_a_state(intermit: Run, write_scenario: Write, tmp_path: Path) -> None:
+    out = tmp_path / "found.json"
+    intermit("check", write_scenario(base="paper-as-printed-laws.toml"), "--json", out)
+    claim = claims_of(out)["lyapunov.derivative"]
+    assert claim["verdict"] == "REFUTED"
+    witness = claim["witness"]
+    assert isinstance(witness, dict)
+    assert len(witness["values"]["beta"]) == 4
+    assert witness["violation"]["low"] > 0
+
+
+def test_g_as_printed_acts_while_the_thruster_falls_and_that_is_not_a_failed_claim(
+    intermit: Run, write_scenario: Write, tmp_path: Path
+) -> None:
+    verdicts = {}
+    for base in ("paper.toml", "paper-e9.toml"):
+        out = tmp_path / f"{base}.json"
+        intermit("check", write_scenario(base=base, name=f"case-{base}"), "--json", out)
+        verdicts[base] = claims_of(out)["schedule.uncertain-thrust"]
+    printed, corrected = verdicts["paper.toml"], verdicts["paper-e9.toml"]
+    assert (printed["verdict"], printed["counted"]) == ("REFUTED", False)
+    assert (corrected["verdict"], corrected["counted"]) == ("PROVED", True)
+
+
+def test_listed_claims_decide_the_exit_code(intermit: Run, write_scenario: Write) -> None:
+    holds = write_scenario(check='claims = ["schedule.order"]')
+    assert intermit("check", "--no-simulate", holds)[0] == 0
+    refuted = write_scenario(base="paper-smaller-lambda.toml", check='claims = ["lyapunov.derivative"]')
+    assert intermit("check", "--no-simulate", refuted)[0] == 1
+
+
+def test_unknown_claim_is_bad_input(intermit: Run, write_scenario: Write) -> None:
+    code, out, err = intermit("check", write_scenario(check='claims = ["schedule.ordre"]'))
+    assert code == 2
+    assert out == ""
+    assert "check.claims" in err
+    assert "schedule.ordre" in err
+
+
+def test_two_scenarios_stand_side_by_side(intermit: Run, write_scenario: Write, tmp_path: Path) -> None:
+    first = write_scenario(name="first.toml")
+    second = write_scenario(base="paper-e9.toml", name="second.toml")
+    code, text, _ = intermit("check", "--no-simulate", first, second)
+    alone, _, _ = intermit("check", "--no-simulate", first)
+    assert code == alone
+    header = next(line for line in text.splitlines() if line.startswith("The schedule"))
+    assert header.split()[-2:] == ["A", "B"]
+    assert intermit("check", first, second, "--json", tmp_path / "x.json")[0] == 2
+
+
+def test_no_terminal_no_progress_bar_and_no_escape_codes(intermit: Run, write_scenario: Write) -> None:
+    _, out, err = intermit("check", "--no-simulate", write_scenario())
+    assert "\x1b" not in out + err
+    assert err.count("\n") == 1
+
+
+def test_check_loads_no_page_and_no_modelling_layer(write_scenario: Write) -> None:
+    program = (
+        "import sys; from intermit.cli.app import run; run(sys.argv[1:]); "
+        f"sys.exit(str([m for m in {NEVER!r} if m in sys.modules] or ''))"
+    )
+    command = [sys.executable, "-c", program, "check", str(write_scenario())]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 1  # sys.exit('') prints nothing but its text
+    assert done.stderr.strip().splitlines()[-1].endswith(" s"), done.stderr
+
+
+def test_interrupted_or_bad_input_writes_nothing(intermit: Run, tmp_path: Path) -> None:
+    code, out, err = intermit("check", tmp_path / "missing.toml", "--json", tmp_path / "x.json")
+    assert (code, out) == (2, "")
+    assert err.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_init_writes_what_check_reads(intermit: Run, tmp_path: Path) -> None:
+    code, out, _ = intermit("init", tmp_path / "new")
+    assert code == 0
+    path = Path(out.strip())
+    assert path.is_file()
+    assert intermit("init", tmp_path / "new")[0] == 2
+    code, out, _ = intermit("init", "--paper", tmp_path / "paper")
+    assert code == 0
+    assert (tmp_path / "paper" / "paper.toml").is_file()
+
+
+@pytest.mark.parametrize("arguments", [["check"], ["check", "--samples", "3"], ["chekc", "x"]])
+def test_wrong_words_are_bad_input(intermit: Run, arguments: list[str]) -> None:
+    code, _, err = intermit(*arguments)
+    assert code == 2
+    assert err.count("\n") == 1
