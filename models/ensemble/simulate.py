@@ -17,9 +17,10 @@ from ..rigid_body import RigidBody
 from ..schedule import Schedule
 from ..simulation.phases import Phase, phases_between
 from .grid import GridObserver
+from .metrics import EnsembleMetrics, MetricOptions, MetricsObserver, joined_metrics
 from .runs import Runs, gather_runs
 from .stacked import STACK, integrate_stack
-from .steps import Array, Tolerances
+from .steps import Array, Observer, Tolerances
 
 Backend = Literal["default", "fast"]
 
@@ -37,6 +38,7 @@ class EnsembleResult:
     stop_times : (N,), s; NaN for a run that reached the horizon
     evaluations : (N,) right-hand sides of each run, the effort (steps, for the fast backend)
     state_names : names in the order of a state
+    metrics : figures of merit of each run, if they were asked for
     """
 
     times: Array
@@ -45,6 +47,7 @@ class EnsembleResult:
     stop_times: Array
     evaluations: NDArray[np.int64]
     state_names: tuple[str, ...]
+    metrics: EnsembleMetrics | None = None
 
     @property
     def completed(self) -> NDArray[np.bool_]:
@@ -65,6 +68,7 @@ def simulate_ensemble(
     horizon: Fraction,
     start: Fraction = Fraction(0),
     times: ArrayLike = (),
+    metrics: MetricOptions | None = None,
     saturation: Saturation | None = None,
     tolerances: Tolerances | None = None,
     executor: Executor | None = None,
@@ -85,6 +89,8 @@ def simulate_ensemble(
         End and start of the runs, s.
     times : (T,) ascending, within [start, horizon], s
         Where states are wanted; none by default.
+    metrics : MetricOptions, optional
+        Asks for peaks, impulse, least R and settling time of every run, with these tolerances.
     saturation : Saturation, optional
         Limit on the applied torque.
     tolerances : Tolerances, optional
@@ -107,24 +113,29 @@ def simulate_ensemble(
     edges = range(0, runs.count, stack)
     parts = [runs.part(a, min(a + stack, runs.count)) for a in edges]
     if executor is None:
-        results = [_simulate_part(part, phases, grid, chosen) for part in parts]
+        results = [_simulate_part(part, phases, grid, chosen, metrics) for part in parts]
     else:
-        futures = [executor.submit(_simulate_part, part, phases, grid, chosen) for part in parts]
+        futures = [executor.submit(_simulate_part, part, phases, grid, chosen, metrics) for part in parts]
         results = [future.result() for future in futures]
     return _joined(results)
 
 
 def _simulate_part(
-    runs: Runs, phases: tuple[Phase, ...], times: Array, tolerances: Tolerances
+    runs: Runs, phases: tuple[Phase, ...], times: Array, tolerances: Tolerances, options: MetricOptions | None
 ) -> EnsembleResult:
     """One stack of runs."""
     size = runs.states.shape[0]
     grid = GridObserver(times, runs.count, size)
-    ends = integrate_stack(runs, phases, tolerances, (grid,) if times.size else ())
+    figures = MetricsObserver(runs, phases, options) if options is not None else None
+    observers: list[Observer] = [grid] if times.size else []
+    observers += [figures] if figures is not None else []
+    ends = integrate_stack(runs, phases, tolerances, tuple(observers))
     grid.close()
+    completed = np.isnan(ends.stop_times)
     return EnsembleResult(
-        times, grid.states, ends.states.T, ends.stop_times, ends.evaluations, runs.loop.state_names
-    )
+        times, grid.states, ends.states.T, ends.stop_times, ends.evaluations, runs.loop.state_names,
+        figures.metrics(completed, float(phases[-1].end)) if figures is not None else None,
+    )  # fmt: skip
 
 
 def _joined(results: list[EnsembleResult]) -> EnsembleResult:
@@ -137,6 +148,7 @@ def _joined(results: list[EnsembleResult]) -> EnsembleResult:
         stop_times=np.concatenate([r.stop_times for r in results]),
         evaluations=np.concatenate([r.evaluations for r in results]),
         state_names=results[0].state_names,
+        metrics=joined_metrics([r.metrics for r in results if r.metrics is not None]),
     )
 
 

@@ -46,13 +46,15 @@ def integrate_stack(
     field = StackedField(runs.structure, runs.parameters, runs.body, degree=signal_degree(phases))
     ends = Ends(np.array(runs.states), np.full(runs.count, np.nan), np.zeros(runs.count, dtype=np.int64))
     with np.errstate(all="ignore"):
-        for phase in phases:
+        for number, phase in enumerate(phases):
             alive = np.flatnonzero(np.isnan(ends.stop_times))
             if not alive.size:
                 break
             if phase.resets:
                 ends.states[:, alive] = _reset(runs, ends.states)[:, alive]
             field.enter(phase, alive)
+            for observer in observers:
+                observer.enter(number)
             _through(
                 Stack(field, alive, ends.states[:, alive], float(phase.start), float(phase.end), tolerances),
                 observers,

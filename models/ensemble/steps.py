@@ -38,6 +38,9 @@ class Field(Protocol):
 class Observer(ABC):
     """Something that reads accepted steps as they are made."""
 
+    def enter(self, phase: int) -> None:  # noqa: B027 - most observers do not care
+        """Note the number of the phase that begins."""
+
     @abstractmethod
     def see(self, step: Step) -> None:
         """Read one accepted step of some runs."""

@@ -1,0 +1,195 @@
+"""Figures of merit of every run, read off the steps' interpolants and refined there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Any, final
+
+import numpy as np
+
+from ..simulation.phases import Phase
+from .observables import NAMES, Observables
+from .runs import Runs
+from .steps import Array, Index, Mask, Observer, Step
+
+GOLDEN = (np.sqrt(5.0) - 1) / 2
+REFINEMENTS = 45
+"""Golden sections: a bracket of a tenth of a step shrinks below the spacing of times."""
+
+
+def _nodes() -> tuple[Array, Array]:
+    """Fractions of a step that are looked at (ends, eight Gauss points) and the quadrature weights."""
+    x, weights = np.polynomial.legendre.leggauss(8)
+    return np.concatenate([[0.0], (1 + x) / 2, [1.0]]), np.concatenate([[0.0], weights / 2, [0.0]])
+
+
+@final
+@dataclass(frozen=True, kw_only=True)
+class MetricOptions:
+    """What counts as settled.
+
+    Attributes
+    ----------
+    attitude, rate : largest |bv| and largest |w| (rad/s); both signs of the quaternion count
+    """
+
+    attitude: float = 1e-2
+    rate: float = 1e-2
+
+    def __post_init__(self) -> None:
+        if not (self.attitude > 0 and self.rate > 0):
+            raise ValueError(f"tolerances must be positive: attitude {self.attitude}, rate {self.rate}")
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class EnsembleMetrics:
+    """Figures of merit over [start, horizon], (N,) each; NaN for a run that stopped.
+
+    Attributes
+    ----------
+    peak_component, peak_euclidean : largest |component| and norm of the applied torque g u, N m
+    peak_commanded_component, peak_commanded_euclidean : the same of u in phases with g, N m
+    impulse : integral of the norm of the applied torque, N m s, to about 1e-6 (the norm has a corner
+        wherever the torque passes close to zero)
+    filter_minimum, filter_minimum_time : least R, s, and when, s; NaN for laws without R
+    settling_time : last time outside the tolerances, s; NaN for a run that ends outside
+    """
+
+    peak_component: Array
+    peak_euclidean: Array
+    peak_commanded_component: Array
+    peak_commanded_euclidean: Array
+    impulse: Array
+    filter_minimum: Array
+    filter_minimum_time: Array
+    settling_time: Array
+
+
+@final
+class MetricsObserver(Observer):
+    """Keeps, for every run and figure, the step on which it is attained."""
+
+    def __init__(self, runs: Runs, phases: tuple[Phase, ...], options: MetricOptions) -> None:
+        self._observables = Observables(runs, phases, options.attitude, options.rate)
+        self._start = float(phases[0].start)
+        count, size = runs.count, runs.states.shape[0]
+        self._best = [_Record(count, size) for _ in NAMES]
+        self._outside = _Record(count, size)
+        self._impulse = np.zeros(count)
+        self._phase = 0
+        self._fractions, self._weights = _nodes()
+
+    def enter(self, phase: int) -> None:
+        """Note the number of the phase that begins."""
+        self._phase = phase
+
+    def see(self, step: Step) -> None:
+        """Update every figure with one accepted step."""
+        shape = (step.runs.size, self._fractions.size)
+        states = step.at(self._fractions)
+        phase = np.full(step.runs.size, self._phase)
+        times = step.start[:, None] + step.length[:, None] * self._fractions
+        values = self._observables(step.runs, phase, times, states)
+        self._impulse[step.runs] += step.length * (values["peak_euclidean"] @ self._weights)
+        for name, record in zip(NAMES, self._best, strict=True):
+            node = np.argmax(values[name], axis=1)
+            record.keep_larger(step, phase, values[name][np.arange(shape[0]), node], node)
+        outside = values["settling"] > 0
+        last = shape[1] - 1 - np.argmax(outside[:, ::-1], axis=1)
+        chosen = outside.any(axis=1)
+        self._outside.replace(step, phase, chosen, step.start + step.length, last)
+
+    def metrics(self, completed: Mask, end: float) -> EnsembleMetrics:
+        """Refine every figure on the step that holds it."""
+        found = {n: self._refined(n, r) for n, r in zip(NAMES, self._best, strict=True) if n != "settling"}
+        least, when = found["filter_minimum"]
+        settled = self._settled(end)
+        values = {
+            **{name: value for name, (value, _) in found.items()},
+            "impulse": self._impulse,
+            "filter_minimum": np.where(np.isfinite(least), -least, np.nan),
+            "filter_minimum_time": np.where(np.isfinite(least), when, np.nan),
+            "settling_time": settled,
+        }
+        return EnsembleMetrics(**{k: np.where(completed, v, np.nan) for k, v in values.items()})
+
+    def _refined(self, name: str, record: _Record) -> tuple[Array, Array]:
+        """Largest value near the best node, and its time: golden section, all runs at once."""
+        runs = np.flatnonzero(record.seen)
+        low = self._fractions[np.maximum(record.node - 1, 0)][runs]
+        high = self._fractions[np.minimum(record.node + 1, self._fractions.size - 1)][runs]
+        best, at = record.value.copy(), self._fractions[record.node].copy()
+        a, b = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+        fa, fb = (self._value(name, record, runs, x) for x in (a, b))
+        for _ in range(REFINEMENTS):
+            left = fa > fb
+            low, high = np.where(left, low, a), np.where(left, b, high)
+            new = np.where(left, high - GOLDEN * (high - low), low + GOLDEN * (high - low))
+            value = self._value(name, record, runs, new)
+            a, b = np.where(left, new, b), np.where(left, a, new)
+            fa, fb = np.where(left, value, fb), np.where(left, fa, value)
+        peak, where = np.maximum(fa, fb), np.where(fa > fb, a, b)
+        better = peak > best[runs]
+        best[runs[better]], at[runs[better]] = peak[better], where[better]
+        return best, record.start + at * record.length
+
+    def _settled(self, end: float) -> Array:
+        """Last crossing into the tolerances, by bisection between two nodes."""
+        record = self._outside
+        runs = np.flatnonzero(record.seen)
+        low = self._fractions[record.node[runs]]
+        high = self._fractions[np.minimum(record.node[runs] + 1, self._fractions.size - 1)]
+        for _ in range(50):
+            middle = (low + high) / 2
+            outside = self._value("settling", record, runs, middle) > 0
+            low, high = np.where(outside, middle, low), np.where(outside, high, middle)
+        times = np.full(record.seen.size, self._start)
+        times[runs] = record.start[runs] + record.length[runs] * high
+        at_end = record.seen & (record.node == self._fractions.size - 1)
+        return np.where(at_end & (record.value >= end * (1 - 1e-15)), np.nan, times)
+
+    def _value(self, name: str, record: _Record, runs: Index, x: Array) -> Array:
+        step = record.step(runs)
+        times = (step.start + step.length * x)[:, None]
+        values = self._observables(runs, record.phase[runs], times, step.at(x[:, None]))
+        return values[name][:, 0]
+
+
+def joined_metrics(parts: list[EnsembleMetrics]) -> EnsembleMetrics | None:
+    """Metrics of several stacks, in order; None if there are none."""
+    if not parts:
+        return None
+    names = [f.name for f in fields(EnsembleMetrics)]
+    return EnsembleMetrics(**{n: np.concatenate([getattr(p, n) for p in parts]) for n in names})
+
+
+class _Record:
+    """One remembered step for each run."""
+
+    def __init__(self, count: int, size: int) -> None:
+        self.seen = np.zeros(count, dtype=bool)
+        self.value = np.full(count, -np.inf)
+        self.node = np.zeros(count, dtype=np.intp)
+        self.phase = np.zeros(count, dtype=np.intp)
+        self.start, self.length = np.zeros(count), np.zeros(count)
+        self.states, self.coefficients = np.zeros((count, size)), np.zeros((count, 7, size))
+
+    def keep_larger(self, step: Step, phase: Index, value: Array, node: Any) -> None:
+        """Remember the step where its value is the largest so far."""
+        self.replace(step, phase, value > self.value[step.runs], value, node)
+
+    def replace(self, step: Step, phase: Index, chosen: Mask, value: Array, node: Any) -> None:
+        """Remember the step for the chosen of its runs."""
+        runs = step.runs[chosen]
+        self.seen[runs] = True
+        self.value[runs], self.node[runs], self.phase[runs] = value[chosen], node[chosen], phase[chosen]
+        self.start[runs], self.length[runs] = step.start[chosen], step.length[chosen]
+        self.states[runs], self.coefficients[runs] = step.states[chosen], step.coefficients[chosen]
+
+    def step(self, runs: Index) -> Step:
+        """The remembered steps of some runs."""
+        end = self.start[runs] + self.length[runs]
+        return Step(
+            runs, self.start[runs], end, self.length[runs], self.states[runs], self.coefficients[runs]
+        )
