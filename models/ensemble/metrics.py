@@ -50,7 +50,7 @@ class EnsembleMetrics:
     ----------
     peak_component, peak_euclidean : largest |component| and norm of the applied torque g u, N m
     peak_commanded_component, peak_commanded_euclidean : the same of u in phases with g, N m
-    impulse : integral of the norm of the applied torque, N m s, to about 1e-6 (the norm has a corner
+    impulse : integral of the norm of the applied torque, N m s, to about 1e-5 (the norm has a corner
         wherever the torque passes close to zero)
     filter_minimum, filter_minimum_time : least R, s, and when, s; NaN for laws without R
     settling_time : last time outside the tolerances, s; NaN for a run that ends outside
@@ -97,7 +97,7 @@ class MetricsObserver(Observer):
             record.keep_larger(step, phase, values[name][np.arange(shape[0]), node], node)
         outside = values["settling"] > 0
         last = shape[1] - 1 - np.argmax(outside[:, ::-1], axis=1)
-        chosen = outside.any(axis=1)
+        chosen = np.asarray(outside.any(axis=1))
         self._outside.replace(step, phase, chosen, step.start + step.length, last)
 
     def metrics(self, completed: Mask, end: float) -> EnsembleMetrics:
