@@ -13,8 +13,9 @@ from .runs import Runs
 from .steps import Array, Index, Mask, Observer, Step
 
 GOLDEN = (np.sqrt(5.0) - 1) / 2
-REFINEMENTS = 45
-"""Golden sections: a bracket of a tenth of a step shrinks below the spacing of times."""
+SCAN = 33
+REFINEMENTS = 36
+"""Points of a first scan of the bracket, then golden sections: it shrinks below the spacing of times."""
 
 
 def _nodes() -> tuple[Array, Array]:
@@ -119,6 +120,7 @@ class MetricsObserver(Observer):
         runs = np.flatnonzero(record.seen)
         low = self._fractions[np.maximum(record.node - 1, 0)][runs]
         high = self._fractions[np.minimum(record.node + 1, self._fractions.size - 1)][runs]
+        low, high = self._closer(name, record, runs, low, high)
         best, at = record.value.copy(), self._fractions[record.node].copy()
         a, b = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
         fa, fb = (self._value(name, record, runs, x) for x in (a, b))
@@ -133,6 +135,15 @@ class MetricsObserver(Observer):
         better = peak > best[runs]
         best[runs[better]], at[runs[better]] = peak[better], where[better]
         return best, record.start + at * record.length
+
+    def _closer(
+        self, name: str, record: _Record, runs: Index, low: Array, high: Array
+    ) -> tuple[Array, Array]:
+        """A bracket small enough to hold one maximum only: largest components change hands in the first."""
+        x = low[:, None] + (high - low)[:, None] * np.linspace(0, 1, SCAN)
+        best = np.argmax(self._values(name, record, runs, x), axis=1)[:, None]
+        left, right = (np.clip(best + shift, 0, SCAN - 1) for shift in (-1, 1))
+        return np.take_along_axis(x, left, 1)[:, 0], np.take_along_axis(x, right, 1)[:, 0]
 
     def _settled(self, end: float) -> Array:
         """Last crossing into the tolerances, by bisection between two nodes."""
@@ -150,10 +161,13 @@ class MetricsObserver(Observer):
         return np.where(at_end & (record.value >= end * (1 - 1e-15)), np.nan, times)
 
     def _value(self, name: str, record: _Record, runs: Index, x: Array) -> Array:
+        return self._values(name, record, runs, x[:, None])[:, 0]
+
+    def _values(self, name: str, record: _Record, runs: Index, x: Array) -> Array:
+        """One observable at fractions x (m, p) of the remembered steps."""
         step = record.step(runs)
-        times = (step.start + step.length * x)[:, None]
-        values = self._observables(runs, record.phase[runs], times, step.at(x[:, None]))
-        return values[name][:, 0]
+        times = step.start[:, None] + step.length[:, None] * x
+        return self._observables(runs, record.phase[runs], times, step.at(x))[name]
 
 
 def joined_metrics(parts: list[EnsembleMetrics]) -> EnsembleMetrics | None:
