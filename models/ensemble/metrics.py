@@ -19,9 +19,12 @@ REFINEMENTS = 36
 
 
 def _nodes() -> tuple[Array, Array]:
-    """Fractions of a step that are looked at (ends, eight Gauss points) and the quadrature weights."""
+    """Fractions of a step that are looked at (ends, eight Gauss points) and the quadrature weights.
+
+    One more, just after the start, tells a maximum that lies in this step from one in the step before.
+    """
     x, weights = np.polynomial.legendre.leggauss(8)
-    return np.concatenate([[0.0], (1 + x) / 2, [1.0]]), np.concatenate([[0.0], weights / 2, [0.0]])
+    return np.concatenate([[0.0, 1e-4], (1 + x) / 2, [1.0]]), np.concatenate([[0.0, 0.0], weights / 2, [0.0]])
 
 
 @final
