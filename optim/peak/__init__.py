@@ -1,1 +1,25 @@
 """Least peak torque through the windows: transcription, two solvers, verification, multi-start."""
+
+from .history import TorqueHistory
+from .minimum_peak import minimum_peak
+from .nlp import NonlinearProgram
+from .options import MultiStart, Refinement
+from .result import PeakAnswer, Search, Standing, Start, Switching
+from .scp import SequentialConvex
+from .verify_answer import FlownHistory, fly_again
+
+__all__ = [
+    "FlownHistory",
+    "MultiStart",
+    "NonlinearProgram",
+    "PeakAnswer",
+    "Refinement",
+    "Search",
+    "SequentialConvex",
+    "Standing",
+    "Start",
+    "Switching",
+    "TorqueHistory",
+    "fly_again",
+    "minimum_peak",
+]

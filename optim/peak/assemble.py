@@ -1,0 +1,101 @@
+"""From a solver's answer to the user's: units restored, everything checked again, verdict drawn."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..problem import TransferProblem
+from .history import TorqueHistory
+from .options import Refinement
+from .result import PeakAnswer, Search, Standing, Switching
+from .scp import LocalAnswer
+from .switching import SwitchingFunction, switch_times
+from .verify_answer import TERMINAL_STANDARD, fly_again
+
+Array = NDArray[np.float64]
+GAP_STANDARD = 1e-6
+"""Largest relative optimality gap of an answer called CHECKED."""
+
+
+def checked(
+    local: LocalAnswer,
+    sigma: SwitchingFunction,
+    refinement: Refinement,
+    record: Search,
+    *,
+    name: str,
+    iterations: int,
+    rounds: int,
+) -> PeakAnswer:
+    """Turn a local answer into the user's units and check it from scratch."""
+    scaled, mesh = local.shooting.scaled, local.shooting.mesh
+    problem, units = scaled.problem, scaled.units
+    control = np.zeros((mesh.size, scaled.control_matrix.shape[1]))
+    control[mesh.open] = local.flight.control * units.control
+    history = TorqueHistory(mesh.edges * units.time, mesh.profile, control, problem.norm)
+    flown = fly_again(problem, history)
+    ours = local.flight.states * np.r_[np.ones(4), np.full(3, 1 / units.time)]
+    defect = float(np.abs((ours - flown.states) * np.r_[np.ones(4), np.full(3, units.time)]).max())
+    faults = []
+    if not flown.feasible:
+        faults.append(
+            f"the terminal condition is missed by {flown.terminal_excess:.1e} "
+            f"(standard {TERMINAL_STANDARD:.0e})"
+        )
+    if local.gap > GAP_STANDARD:
+        faults.append(f"the optimality gap is {local.gap:.1e} (standard {GAP_STANDARD:.0e})")
+    if sigma.total_loss > refinement.mesh_gap:
+        faults.append(
+            f"finer cells would still gain {sigma.total_loss:.1e} (asked for {refinement.mesh_gap:.0e})"
+        )
+    return PeakAnswer(
+        problem=problem,
+        standing=Standing.UNDECIDED if faults else Standing.CHECKED,
+        peak=history.peak,
+        sign=local.shooting.sign,
+        history=history,
+        flown=flown,
+        switching=_plot_ready(sigma),
+        optimality_gap=local.gap,
+        mesh_gap=sigma.total_loss,
+        defect=defect,
+        solver=name,
+        iterations=iterations,
+        rounds=rounds,
+        search=record,
+        reason="; ".join(faults),
+        next_step="raise the number of starts or cells, or use the other solver" if faults else "",
+    )
+
+
+def _plot_ready(sigma: SwitchingFunction) -> Switching:
+    """Switching function in seconds on a grid of each open cell."""
+    time = sigma.answer.shooting.scaled.units.time
+    grid = np.linspace(0.0, 1.0, 5)
+    times = (sigma.start[:, None] + sigma.length[:, None] * grid) * time
+    return Switching(times, sigma.at(grid) / time, switch_times(sigma), sigma.pontryagin_residual)
+
+
+def without_history(problem: TransferProblem, standing: Standing, reason: str, next_step: str) -> PeakAnswer:
+    """Answer without a history."""
+    return PeakAnswer(
+        problem=problem,
+        standing=standing,
+        peak=math.inf,
+        sign=0,
+        history=None,
+        flown=None,
+        switching=None,
+        optimality_gap=math.inf,
+        mesh_gap=math.inf,
+        defect=math.inf,
+        solver="none",
+        iterations=0,
+        rounds=0,
+        search=Search(()),
+        reason=reason,
+        next_step=next_step,
+    )

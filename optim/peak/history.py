@@ -1,0 +1,67 @@
+"""The torque history an optimum is: plain numbers in the user's units, independent of any solver."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..norms import Norm
+
+Array = NDArray[np.float64]
+
+
+@final
+@dataclass(frozen=True)
+class TorqueHistory:
+    """torque(t) = w(t) B control_k on cell k, body frame, N m; zero outside the windows.
+
+    Attributes
+    ----------
+    edges : (n + 1,)
+        Cell edges, s.
+    profile : (n, d + 1)
+        w on each cell in s = (t - start) / length, lowest power first; zero outside the windows.
+    control : (n, m)
+        Control on each cell, in the norm's unit; zero outside the windows.
+    norm : Norm
+        What the control's effort is measured in.
+    """
+
+    edges: Array
+    profile: Array
+    control: Array
+    norm: Norm
+
+    @cached_property
+    def base_torque(self) -> Array:
+        """B control, torque before the factor w, (n, 3), N m."""
+        return np.asarray(self.control @ self.norm.control_matrix.T)
+
+    @cached_property
+    def peak(self) -> float:
+        """Largest effort of any cell: the least p with effort(control) <= p on every open cell."""
+        return float(self.norm.effort(self.control[self.open]).max())
+
+    @property
+    def open(self) -> NDArray[np.bool_]:
+        """Whether the cell lies in a window, (n,)."""
+        return np.asarray(np.any(self.profile != 0.0, axis=1))
+
+    @cached_property
+    def impulse(self) -> float:
+        """Integral of the effort, w effort(control), over the transfer: N m s (N s for thrusters)."""
+        share = self.profile @ (1.0 / np.arange(1, self.profile.shape[1] + 1))
+        effort = np.where(self.open, self.norm.effort(self.control), 0.0)
+        return float((np.diff(self.edges) * share * effort).sum())
+
+    def torque(self, t: ArrayLike) -> Array:
+        """Torque at times t (...,) in s, (..., 3), N m; at an edge that of the cell after it."""
+        times = np.asarray(t, dtype=float)
+        cell = np.clip(np.searchsorted(self.edges, times, side="right") - 1, 0, len(self.control) - 1)
+        s = (times - self.edges[cell]) / np.diff(self.edges)[cell]
+        w = (self.profile[cell] * s[..., None] ** np.arange(self.profile.shape[1])).sum(axis=-1)
+        return np.asarray(w[..., None] * self.base_torque[cell])

@@ -1,0 +1,164 @@
+"""The convex step: least peak for the transfer linearised about the current control.
+
+    minimise    p + penalty * slack + (damping / 2) sum_k weight_k |v_k - v0_k|^2
+    subject to  residual + G (v - v0) within the terminal set, up to the slack
+                effort(v_k) <= p on every open cell
+
+The slack makes the program feasible whatever the linearisation says (an exact penalty); the
+effort cones are kept whole, not linearised. Solved by Clarabel's interior point method.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..norms import Euclidean, LargestComponent, Norm
+
+Array = NDArray[np.float64]
+
+
+@final
+@dataclass(frozen=True)
+class Linearisation:
+    """A control (n, m) on the open cells, the residual (6,) it leads to, and its derivative (6, n m)."""
+
+    control: Array
+    residual: Array
+    derivative: Array
+
+
+@final
+@dataclass(frozen=True)
+class ConvexStep:
+    """Answer of one convex program.
+
+    Attributes
+    ----------
+    control : (n, m)
+    peak, slack : float
+    multiplier : (6,)
+        Of the terminal rows, so that `multiplier @ derivative` is minus the switching function.
+    trusted : bool
+        Clarabel's own word was "solved" (a hint for the loop, never evidence).
+    """
+
+    control: Array
+    peak: float
+    slack: float
+    multiplier: Array
+    trusted: bool
+
+
+@final
+class ConeProgram:
+    """Sparse pattern and effort cones for n cells of one norm and one terminal set."""
+
+    def __init__(self, norm: Norm, cells: int, weights: Array, tolerances: tuple[float, float]) -> None:
+        import scipy.sparse as sparse
+
+        self.cells, self.m = cells, norm.control_matrix.shape[1]
+        self.tolerances = tolerances
+        self.exact = [block for block in (0, 1) if tolerances[block] == 0.0]
+        self.ball = [block for block in (0, 1) if tolerances[block] > 0.0]
+        self.n_control = self.cells * self.m
+        self.n_slack = 6 * len(self.exact) + len(self.ball)
+        self.size = self.n_control + 1 + self.n_slack
+        self.weights = np.repeat(weights, self.m)
+        rows, cones = self._effort(norm, sparse)
+        slack = sparse.csc_matrix(
+            (-np.ones(self.n_slack), (range(self.n_slack), range(self.n_control + 1, self.size))),
+            shape=(self.n_slack, self.size),
+        )
+        self._fixed = sparse.vstack([slack, rows]).tocsc()
+        self._cones = cones
+
+    def _effort(self, norm: Norm, sparse: Any) -> tuple[Any, list[Any]]:
+        """Rows A with s = -A z in the cones, for effort(v_k) <= p."""
+        import clarabel
+
+        n, m = self.n_control, self.m
+        identity = sparse.identity(n, format="csc")
+        if isinstance(norm, Euclidean):
+            row = np.arange(n) + np.arange(n) // m + 1
+            head = np.arange(self.cells) * (m + 1)
+            entries = np.r_[row, head], np.r_[np.arange(n), np.full(self.cells, n)]
+            matrix = sparse.csc_matrix((-np.ones(n + self.cells), entries), shape=(n + self.cells, self.size))
+            return matrix, [clarabel.NonnegativeConeT(self.n_slack)] + [
+                clarabel.SecondOrderConeT(m + 1) for _ in range(self.cells)
+            ]
+        peak = sparse.csc_matrix(-np.ones((n, 1)))
+        empty = sparse.csc_matrix((n, self.n_slack))
+        upper = sparse.hstack([identity, peak, empty])
+        lower_peak = peak if isinstance(norm, LargestComponent) else sparse.csc_matrix((n, 1))
+        lower = sparse.hstack([-identity, lower_peak, empty])
+        return sparse.vstack([upper, lower]), [clarabel.NonnegativeConeT(self.n_slack + 2 * n)]
+
+    def solve(self, at: Linearisation, *, penalty: float, damping: float) -> ConvexStep:
+        """Solve the convex program at one linearisation."""
+        import clarabel
+        import scipy.sparse as sparse
+
+        n = self.n_control
+        centre = at.control.ravel()
+        offset = at.residual - at.derivative @ centre
+        exact_rows, exact_rhs = self._exact_rows(at.derivative, offset)
+        ball_rows, ball_rhs = self._ball_rows(at.derivative, offset)
+        A = sparse.vstack([sparse.csc_matrix(exact_rows), self._fixed, sparse.csc_matrix(ball_rows)]).tocsc()
+        b = np.concatenate([exact_rhs, np.zeros(self._fixed.shape[0]), ball_rhs])
+        cones = [clarabel.ZeroConeT(len(exact_rhs)), *self._cones]
+        cones += [clarabel.SecondOrderConeT(4) for _ in self.ball]
+        diagonal = np.r_[damping * self.weights, np.zeros(1 + self.n_slack)]
+        q = np.r_[-damping * self.weights * centre, 1.0, np.full(self.n_slack, penalty)]
+        solver = clarabel.DefaultSolver(sparse.diags(diagonal).tocsc(), q, A, b, cones, _settings())
+        answer = solver.solve()
+        z, dual = np.array(answer.x), np.array(answer.z)
+        return ConvexStep(
+            control=z[:n].reshape(self.cells, self.m),
+            peak=float(z[n]),
+            slack=float(np.maximum(z[n + 1 :], 0.0).sum()),
+            multiplier=self._multiplier(dual, len(b)),
+            trusted=str(answer.status) in ("Solved", "AlmostSolved"),
+        )
+
+    def _exact_rows(self, G: Array, offset: Array) -> tuple[Array, Array]:
+        rows = np.zeros((3 * len(self.exact), self.size))
+        for i, block in enumerate(self.exact):
+            rows[3 * i : 3 * i + 3, : self.n_control] = G[3 * block : 3 * block + 3]
+            start = self.n_control + 1 + 6 * i
+            rows[3 * i : 3 * i + 3, start : start + 3] = np.eye(3)
+            rows[3 * i : 3 * i + 3, start + 3 : start + 6] = -np.eye(3)
+        rhs = [-offset[3 * block : 3 * block + 3] for block in self.exact]
+        return rows, np.concatenate(rhs) if rhs else np.zeros(0)
+
+    def _ball_rows(self, G: Array, offset: Array) -> tuple[Array, Array]:
+        rows, rhs = np.zeros((4 * len(self.ball), self.size)), np.zeros(4 * len(self.ball))
+        for i, block in enumerate(self.ball):
+            rows[4 * i, self.n_control + 1 + 6 * len(self.exact) + i] = -1.0
+            rhs[4 * i] = self.tolerances[block]
+            rows[4 * i + 1 : 4 * i + 4, : self.n_control] = -G[3 * block : 3 * block + 3]
+            rhs[4 * i + 1 : 4 * i + 4] = offset[3 * block : 3 * block + 3]
+        return rows, rhs
+
+    def _multiplier(self, dual: Array, rows: int) -> Array:
+        multiplier = np.zeros(6)
+        for i, block in enumerate(self.exact):
+            multiplier[3 * block : 3 * block + 3] = dual[3 * i : 3 * i + 3]
+        first = rows - 4 * len(self.ball)
+        for i, block in enumerate(self.ball):
+            multiplier[3 * block : 3 * block + 3] = -dual[first + 4 * i + 1 : first + 4 * i + 4]
+        return multiplier
+
+
+def _settings() -> Any:
+    import clarabel
+
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-10
+    settings.max_iter = 60
+    settings.max_threads = 1
+    return settings
