@@ -1,0 +1,142 @@
+"""Polynomials on [0, 1] in exact scaled Bernstein form.
+
+p(x) = sum_j a_j x^j (1 - x)^(n - j) with a_j = binomial(n, j) c_j, c_j the Bernstein
+coefficients. In this form the product of two polynomials is a convolution, and all a_j >= 0
+proves p >= 0 on [0, 1]. Coefficients are rationals (python-flint), so nothing is rounded.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from functools import cache
+from itertools import pairwise
+from math import comb
+from typing import final
+
+from flint import fmpq, fmpq_poly
+
+from ...models.schedule import polynomial as poly
+
+
+def rational(value: Fraction | float | int) -> fmpq:
+    """Return the exact value as a flint rational; a float is taken at its binary value."""
+    numerator, denominator = value.as_integer_ratio()
+    return fmpq(numerator, denominator)
+
+
+def fraction(value: fmpq) -> Fraction:
+    """Return a flint rational as a `Fraction`."""
+    return Fraction(int(value.p), int(value.q))
+
+
+@cache
+def _one_plus_x(power: int) -> fmpq_poly:
+    return fmpq_poly([1, 1]) ** power
+
+
+@final
+class Bernstein:
+    """A polynomial of formal degree `degree` on [0, 1]; immutable.
+
+    Attributes
+    ----------
+    form : fmpq_poly
+        Generating polynomial of the scaled coefficients a_0 .. a_degree.
+    degree : int
+    """
+
+    __slots__ = ("degree", "form")
+
+    def __init__(self, form: fmpq_poly, degree: int) -> None:
+        self.form = form
+        self.degree = degree
+
+    @classmethod
+    def from_controls(cls, controls: Sequence[Fraction | float]) -> Bernstein:
+        """Build from plain Bernstein coefficients c_0 .. c_n, floats at their exact value."""
+        n = len(controls) - 1
+        return cls(fmpq_poly([comb(n, j) * rational(c) for j, c in enumerate(controls)]), n)
+
+    @classmethod
+    def constant(cls, value: Fraction | float) -> Bernstein:
+        """Build a constant."""
+        return cls(fmpq_poly([rational(value)]), 0)
+
+    @classmethod
+    def from_powers(cls, coefficients: poly.Coefficients) -> Bernstein:
+        """Build from power coefficients in x on [0, 1], lowest first."""
+        return cls.from_controls(poly.bernstein(coefficients))
+
+    def elevated(self, degree: int) -> Bernstein:
+        """Return the same polynomial with formal degree `degree`."""
+        if degree == self.degree:
+            return self
+        return Bernstein(self.form * _one_plus_x(degree - self.degree), degree)
+
+    def __add__(self, other: Bernstein) -> Bernstein:
+        n = max(self.degree, other.degree)
+        return Bernstein(self.elevated(n).form + other.elevated(n).form, n)
+
+    def __sub__(self, other: Bernstein) -> Bernstein:
+        n = max(self.degree, other.degree)
+        return Bernstein(self.elevated(n).form - other.elevated(n).form, n)
+
+    def __neg__(self) -> Bernstein:
+        return Bernstein(-self.form, self.degree)
+
+    def __mul__(self, other: Bernstein | fmpq | int) -> Bernstein:
+        if isinstance(other, Bernstein):
+            return Bernstein(self.form * other.form, self.degree + other.degree)
+        return Bernstein(self.form * other, self.degree)
+
+    __rmul__ = __mul__
+
+    def derivative(self) -> Bernstein:
+        """Return dp/dx."""
+        n = self.degree
+        if n == 0:
+            return Bernstein(fmpq_poly([]), 0)
+        a = [self.form[j] for j in range(n + 1)]
+        # n (c_{j+1} - c_j) binomial(n-1, j) in scaled coefficients:
+        return Bernstein(fmpq_poly([(j + 1) * a[j + 1] - (n - j) * a[j] for j in range(n)]), n - 1)
+
+    def controls(self) -> list[Fraction]:
+        """Plain Bernstein coefficients; p lies between the least and the greatest on [0, 1]."""
+        n = self.degree
+        return [fraction(self.form[j]) / comb(n, j) for j in range(n + 1)]
+
+    def is_nonnegative(self, depth: int = 4) -> bool:
+        """Whether p >= 0 on [0, 1] is proved with at most `depth` halvings; False proves nothing."""
+        if all(c >= 0 for c in self.form.numer().coeffs()):
+            return True
+        if depth == 0 or self.form[0] < 0 or self.form[self.degree] < 0:
+            return False
+        left, right = split(self.controls())
+        return all(Bernstein.from_controls(half).is_nonnegative(depth - 1) for half in (left, right))
+
+    def lower_bound(self, depth: int = 3) -> Fraction:
+        """Return a proved lower bound of p on [0, 1], tighter with each of `depth` halvings."""
+        return lower_bound(self.controls(), depth)
+
+    def upper_bound(self, depth: int = 3) -> Fraction:
+        """Return a proved upper bound of p on [0, 1]."""
+        return -lower_bound([-c for c in self.controls()], depth)
+
+
+def split(controls: Sequence[Fraction]) -> tuple[list[Fraction], list[Fraction]]:
+    """De Casteljau at 1/2: Bernstein coefficients of the two halves."""
+    row, left, right = list(controls), [], []
+    while row:
+        left.append(row[0])
+        right.append(row[-1])
+        row = [(a + b) / 2 for a, b in pairwise(row)]
+    return left, right[::-1]
+
+
+def lower_bound(controls: Sequence[Fraction], depth: int) -> Fraction:
+    """Return a proved lower bound of the polynomial with these Bernstein coefficients."""
+    least = min(controls)
+    if depth == 0 or least in (controls[0], controls[-1]):
+        return least
+    return min(lower_bound(half, depth - 1) for half in split(controls))

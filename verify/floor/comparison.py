@@ -1,0 +1,81 @@
+"""What the comparison systems of both laws share: variables, inequalities, data.
+
+Variables of the closed loop (rigid body, Omega = w + 2 g^2 kappa bv):
+
+    y = |Omega|_J = sqrt(Omega' J Omega),     s = sqrt(1 - b0) in [0, sqrt 2],     S = s^2.
+
+From J Omega' = -Omega x J w - (g^2/2) kappa (1 + b0) J Omega, since Omega'(Omega x J w) = 0,
+
+    y' = -(1/2) g^2 kappa (2 - S) y                                      (exactly)
+
+and from b0' = -(1/2) bv.w with w = Omega - 2 g^2 kappa bv and |bv|^2 = S (2 - S),
+
+    s' = bv.Omega / (4 s) - (1/2) g^2 kappa s (2 - S),
+    |bv.Omega| / (4 s) <= sqrt(2 - S) |Omega| / 4 <= c A(S) y,
+    c = 1/sqrt(8 Jmin),   A(S) = 1 - S/4 - S^2/32 >= sqrt(1 - S/2)       (0 <= S <= 2).
+
+R' = -lambda R + g^2 (2 - S). An upper function of a component whose slope is at least the
+greatest slope the component can have when it touches it, the others anywhere within their
+bounds, is never crossed; likewise from below (the comparison theorem of Mueller and Walter).
+At a step's start a bound may jump to its loose side.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import final
+
+from ...models import RigidBody
+from ..enclosure.balls import (
+    float_above,
+    greatest_eigenvalue_above,
+    least_eigenvalue_below,
+    ball,
+)
+from ..enclosure.bernstein import Bernstein
+
+ONE = Bernstein.constant(1)
+TWO = Bernstein.constant(2)
+ZERO = Bernstein.constant(0)
+BLIND = 1.999
+"""Above this S = 1 - b0 the error-angle bound counts as having reached 2 pi."""
+
+
+@final
+@dataclass(frozen=True)
+class BodyBounds:
+    """What the comparison systems need to know of the inertia.
+
+    Attributes
+    ----------
+    least, greatest : Fraction
+        Rationals around the principal inertias: least <= Jmin, greatest >= Jmax, kg m^2.
+    """
+
+    least: Fraction
+    greatest: Fraction
+
+    def __post_init__(self) -> None:
+        if not 0 < self.least <= self.greatest:
+            raise ValueError("principal inertia bounds must satisfy 0 < least <= greatest")
+
+    @classmethod
+    def of(cls, body: RigidBody) -> BodyBounds:
+        """Bounds of one inertia, within about 1e-12 of its principal inertias."""
+        return cls(least_eigenvalue_below(body.exact_inertia), greatest_eigenvalue_above(body.exact_inertia))
+
+    @property
+    def coupling(self) -> float:
+        """A float c >= 1/sqrt(8 Jmin), (kg m^2)^(-1/2)."""
+        return float_above(1 / (8 * ball(self.least)).sqrt())
+
+
+def angle_factor(S: Bernstein) -> Bernstein:
+    """A(S) = 1 - S/4 - S^2/32, an upper bound of sqrt(1 - S/2) on 0 <= S <= 2."""
+    return ONE - S * Bernstein.constant(Fraction(1, 4)) - S * S * Bernstein.constant(Fraction(1, 32))
+
+
+def angle_factor_float(S: float) -> float:
+    """A(S) in floats."""
+    return 1.0 - S * (0.25 + 0.03125 * S)

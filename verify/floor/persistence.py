@@ -1,0 +1,129 @@
+"""Comparison system of the persistence-filter law, kappa = 1/R.
+
+With K <= 1/R (from R' <= -lambda R + 2 g^2) and two bounds of the error angle:
+
+a.  y, s: the inequalities of `comparison` with kappa >= K.
+b.  In z = s sqrt(R/R0), v = y sqrt(R/R0) the gain cancels:
+        v' = -(lambda/2) v,      z' <= -(lambda/2) z + c v (1 - S/4),   S = R0 z^2/R >= R0 K z^2,
+    so S <= R0 z^2 / R, exact for a start at rest.
+
+The floor r <= R then obeys r' <= -lambda r + g^2 (2 - sigma), sigma any upper bound of S; a step
+uses "angle" (sigma = s^2), "cascade" (sigma = R0 z^2/r, valid where r touches R), or "none"
+(sigma = 2).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from typing import final
+
+from ..enclosure.balls import fraction_below
+from ..enclosure.bernstein import Bernstein, rational
+from ..enclosure.stepping import ComparisonSystem, Modes
+from .comparison import BLIND, TWO, ONE, angle_factor, angle_factor_float
+from .sets import InitialSet
+
+
+@final
+class PersistenceSystem(ComparisonSystem):
+    """Components K, y, s, v, z, r of the module's inequalities.
+
+    Parameters
+    ----------
+    decay : lambda, 1/s
+    initial_filter : R(0), s
+    coupling : c >= 1/sqrt(8 Jmin)
+    tail : drop the factors A(S) and 1 - S/4, so that (y, s, v, z) may be scaled down together
+    """
+
+    names = ("K", "y", "s", "v", "z", "r")
+    signs = (-1, 1, 1, 1, 1, -1)
+
+    def __init__(
+        self, *, decay: Fraction, initial_filter: Fraction, coupling: float, tail: bool = False
+    ) -> None:
+        self.decay, self.initial_filter, self.coupling, self.tail = decay, initial_filter, coupling, tail
+        self._lam, self._R0 = float(decay), float(initial_filter)
+        half = Bernstein.constant(Fraction(1, 2))
+        self._half, self._quarter = half, half * half
+        self._lam_exact, self._c = rational(decay), rational(coupling)
+        self._R0_exact = rational(initial_filter)
+
+    def start(self, initial: InitialSet) -> tuple[float, ...]:
+        """Values at t = 0, on the safe side of the initial set."""
+        K = fraction_below(1 / self.initial_filter)
+        y, s = initial.y_high, initial.s_high
+        return (K, y, s, y, s, fraction_below(self.initial_filter))
+
+    def choices(self, state: Sequence[float], peak: float) -> Sequence[Modes]:
+        """Order the bounds of the angle by their value now."""
+        _, _, s, _, z, r = state
+        angle = "angle" if s * s < BLIND else "blind"
+        sigma = self._R0 * z * z / r
+        if peak == 0.0:
+            return ((angle, "none"),) if angle == "blind" else ((angle, "none"), ("blind", "none"))
+        filters = ["cascade"] if sigma < 2.0 else ["none", "cascade"]
+        if angle == "angle":
+            filters.insert(0 if s * s < sigma else 1, "angle")
+        return tuple((angle, f) for f in filters)
+
+    def rate(
+        self, gain_square: float, state: Sequence[float], modes: Modes, peak: float, slack: float
+    ) -> tuple[float, ...]:
+        """Floats; each bound pushed outwards by `slack` times its own scale."""
+        K, y, s, v, z, r = state
+        lam, c, R0, G = self._lam, self.coupling, self._R0, gain_square
+        S = s * s
+        pull = 0.5 * G * K * (2.0 - S)
+        K_rate = lam * K - 2.0 * G * K * K - slack * (lam * K + 2.0 * peak * K * K)
+        if modes[0] == "blind":
+            y_rate = s_rate = 0.0
+        else:
+            factor = 1.0 if self.tail else angle_factor_float(S)
+            y_rate = -pull * y + slack * peak * K * y
+            s_rate = c * y * factor - pull * s + slack * (peak * K * s + 0.1 * c * y)
+        v_rate = -0.5 * lam * v * (1.0 - slack)
+        bend = 1.0 if self.tail else 1.0 - 0.25 * R0 * K * z * z
+        z_rate = -0.5 * lam * z * (1.0 - slack) + c * v * bend + slack * 0.5 * c * v
+        sigma = {"angle": S, "cascade": R0 * z * z / r, "none": 2.0}[modes[1]]
+        r_rate = -lam * r + G * (2.0 - sigma) - slack * (lam * r + (peak if modes[1] != "none" else 0.0))
+        return (K_rate, y_rate, s_rate, v_rate, z_rate, r_rate)
+
+    def conditions(
+        self, gain_square: Bernstein, x: Sequence[Bernstein], dx: Sequence[Bernstein], modes: Modes
+    ) -> Iterator[Bernstein]:
+        """Polynomials >= 0 iff every bound holds; the signs r > 0 and S <= 2 among them."""
+        K, y, s, v, z, r = x
+        dK, dy, ds, dv, dz, dr = dx
+        G, lam, c = gain_square, self._lam_exact, self._c
+        yield K
+        yield K * lam - G * K * K * 2 - dK
+        if modes[0] == "angle":
+            S = s * s
+            room = TWO - S
+            pull = G * K * room * self._half
+            yield room
+            yield s
+            yield dy + pull * y
+            drift = y if self.tail else y * angle_factor(S)
+            yield ds - drift * c + pull * s
+        yield dv + v * self._half * lam
+        bend = ONE if self.tail else ONE - K * z * z * self._quarter * self._R0_exact
+        yield dz + z * self._half * lam - v * bend * c
+        yield z
+        yield r
+        yield from self._floor(gain_square, s, z, r, dr, modes[1])
+
+    def _floor(
+        self, G: Bernstein, s: Bernstein, z: Bernstein, r: Bernstein, dr: Bernstein, mode: str
+    ) -> Iterator[Bernstein]:
+        lam = self._lam_exact
+        if mode == "none":
+            yield -dr - r * lam
+        elif mode == "angle":
+            yield G * (TWO - s * s) - r * lam - dr
+        else:  # multiplied by r > 0
+            yield G * (r * 2 - z * z * self._R0_exact) - r * (r * lam + dr)
+
+
