@@ -62,6 +62,10 @@ def minimum_below(
     bound : callable
         A proved lower bound of the function over a given box; it must not fall when a box shrinks
         for the loop to make headway, but soundness does not need that.
+    box : the box to cover
+    target : stop once this is proved
+    max_evaluations : stop after this many calls of `bound`
+    scale : one positive length a coordinate, in which widths are compared
     """
     tie = count()
     heap = [(bound(box), next(tie), box)]

@@ -16,17 +16,17 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import final
 
+import numpy as np
+
 from ...models.schedule import Schedule
 from ...models.schedule import polynomial as poly
 from ...models.schedule.piecewise import Piece
 from ...models.schedule.polynomial import Coefficients
 from .bernstein import Bernstein, rational
-from .collocation import evaluate, propose
+from .collocation import CHECK_POINTS, Array, propose, rule
 
 Modes = tuple[str, ...]
 """Which of several valid forms of the inequalities a step uses, in the system's own words."""
-
-CHECK_POINTS = (0.0, 0.13, 0.31, 0.5, 0.69, 0.87, 1.0)
 
 
 @final
@@ -84,13 +84,16 @@ class ComparisonSystem(ABC):
 
     @abstractmethod
     def choices(self, state: Sequence[float], peak: float) -> Sequence[Modes]:
-        """Forms of the inequalities to try from this state, best first; `peak` = max g^2 ahead."""
+        """Forms of the inequalities to try from this state, best first; `peak`: see `rate`."""
 
     @abstractmethod
     def rate(
         self, gain_square: float, state: Sequence[float], modes: Modes, peak: float, slack: float
     ) -> tuple[float, ...]:
-        """Right-hand side in floats, pushed by `slack` in the safe direction."""
+        """Right-hand side in floats, pushed by `slack` in the safe direction.
+
+        `peak` is the greatest g^2 on the schedule piece, the scale of the slack.
+        """
 
     @abstractmethod
     def conditions(
@@ -117,8 +120,21 @@ def gain_square(shape: Coefficients, part: tuple[int, int]) -> Bernstein:
 
 
 @lru_cache(maxsize=65536)
-def _float_controls(shape: Coefficients, part: tuple[int, int]) -> tuple[float, ...]:
-    return tuple(float(c) for c in gain_square(shape, part).controls())
+def _float_gains(
+    shape: Coefficients, part: tuple[int, int], degree: int
+) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """g^2 at the collocation nodes and at the check points of one part of a piece."""
+    powers = np.array([float(c) for c in reversed(shape)] or [0.0])
+    x = (part[0] + np.concatenate([rule(degree).nodes, CHECK_POINTS])) / part[1]
+    values = (np.polyval(powers, x) ** 2).tolist()
+    return tuple(values[:degree]), tuple(values[degree:])
+
+
+@lru_cache(maxsize=4096)
+def _peak(shape: Coefficients) -> float:
+    """About the greatest g^2 on a whole schedule piece: the scale of the slack."""
+    powers = [float(c) for c in reversed(shape)] or [0.0]
+    return float(np.max(np.polyval(powers, np.linspace(0.0, 1.0, 17)) ** 2))
 
 
 @final
@@ -188,15 +204,15 @@ class Stepper:
         j, n = part
         start = piece.start + piece.length * Fraction(j, n)
         stop = piece.start + piece.length * Fraction(j + 1, n)
-        gains = _float_controls(piece.shape, part)
-        peak = max(gains)
+        peak = _peak(piece.shape)
         for modes in self.system.choices(state, peak):
             self.attempts += 1
-            proposal = self._propose(gains, peak, float(stop - start), state, modes)
+            proposal = self._propose(piece.shape, part, float(stop - start), state, modes)
             if proposal is None:
                 continue
             controls = {
-                name: tuple(c) for name, c in zip(self.system.names, proposal, strict=True)
+                name: tuple(column)
+                for name, column in zip(self.system.names, proposal.T.tolist(), strict=True)
             }
             step = Step(start, stop, piece.shape, part, controls, modes)
             if is_proved(self.system, step):
@@ -205,30 +221,35 @@ class Stepper:
         return None
 
     def _propose(
-        self, gains: Sequence[float], peak: float, length: float, state: Sequence[float], modes: Modes
-    ) -> list[list[float]] | None:
+        self,
+        shape: Coefficients,
+        part: tuple[int, int],
+        length: float,
+        state: Sequence[float],
+        modes: Modes,
+    ) -> Array | None:
         """Collocate, then discard proposals whose defect already shows in floats."""
-        system, slack = self.system, self.slack
+        system, peak = self.system, _peak(shape)
+        node_gains, check_gains = _float_gains(shape, part, self.degree)
 
-        def rate(x: float, values: Sequence[float]) -> Sequence[float]:
-            return system.rate(evaluate(gains, x), values, modes, peak, slack)
+        def rates(points: Array, gains: Sequence[float], slack: float) -> Array:
+            rows = zip(gains, points.tolist(), strict=True)
+            return np.array([system.rate(g, row, modes, peak, slack) for g, row in rows])
 
         try:
-            proposal = propose(rate, state, length, self.degree)
-        except OverflowError:
+            controls = propose(
+                lambda points: rates(points, node_gains, self.slack), np.array(state), length, self.degree
+            )
+            if controls is None or not np.all(np.isfinite(controls)):
+                return None
+            controls[0] = state  # steps meet exactly
+            r = rule(self.degree)
+            values = r.check_values @ controls
+            exact = rates(values, check_gains, 0.0)
+        except (OverflowError, ZeroDivisionError):
             return None
-        if proposal is None:
-            return None
-        slopes = [
-            [(b - a) * self.degree / length for a, b in zip(c[:-1], c[1:], strict=True)] for c in proposal
-        ]
-        for x in CHECK_POINTS:
-            values = [evaluate(c, x) for c in proposal]
-            exact = system.rate(evaluate(gains, x), values, modes, peak, 0.0)
-            for sign, d, f in zip(system.signs, slopes, exact, strict=True):
-                if sign * (evaluate(d, x) - f) < -1e-13 * abs(f):
-                    return None
-        return proposal
+        margin = np.array(system.signs) * (r.check_slopes @ controls / length - exact)
+        return controls if np.all(margin >= -1e-13 * np.abs(values) / length) else None
 
 
 def is_proved(system: ComparisonSystem, step: Step) -> bool:

@@ -26,12 +26,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
 
-from ...models import RigidBody
+from ...models.rigid_body import RigidBody
 from ..enclosure.balls import (
+    ball,
     float_above,
     greatest_eigenvalue_above,
     least_eigenvalue_below,
-    ball,
 )
 from ..enclosure.bernstein import Bernstein
 

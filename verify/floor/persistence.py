@@ -21,7 +21,7 @@ from typing import final
 from ..enclosure.balls import fraction_below
 from ..enclosure.bernstein import Bernstein, rational
 from ..enclosure.stepping import ComparisonSystem, Modes
-from .comparison import BLIND, TWO, ONE, angle_factor, angle_factor_float
+from .comparison import BLIND, ONE, TWO, angle_factor, angle_factor_float
 from .sets import InitialSet
 
 
@@ -125,5 +125,3 @@ class PersistenceSystem(ComparisonSystem):
             yield G * (TWO - s * s) - r * lam - dr
         else:  # multiplied by r > 0
             yield G * (r * 2 - z * z * self._R0_exact) - r * (r * lam + dr)
-
-

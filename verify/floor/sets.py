@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
 
-from ...models import RigidBody
+from ...models.rigid_body import RigidBody
 from ..enclosure.balls import ball, float_above, float_below, sqrt_above, sqrt_below
 from .comparison import BodyBounds
 
@@ -74,14 +74,15 @@ class InitialSet:
         b0, bv = ball(quaternion[0]) / norm, [ball(q) / norm for q in quaternion[1:]]
         Omega = [ball(w) + 2 * ball(gain_term) * b for w, b in zip(rate, bv, strict=True)]
         J = body.exact_inertia
-        square = sum(
-            (ball(J[i][j]) * Omega[i] * Omega[j] for i in range(3) for j in range(3)), ball(0)
-        )
+        square = sum((ball(J[i][j]) * Omega[i] * Omega[j] for i in range(3) for j in range(3)), ball(0))
         s_low, s_high = _root_bounds(1 - b0)
         y_low, y_high = _root_bounds(square)
         at_rest = gain_term == 0 and not any(rate)
         return cls(
-            s_low, min(s_high, 1.4142135623730954), 0.0 if at_rest else y_low, 0.0 if at_rest else y_high,
+            s_low,
+            min(s_high, 1.4142135623730954),
+            0.0 if at_rest else y_low,
+            0.0 if at_rest else y_high,
             "the scenario's initial state",
         )
 
