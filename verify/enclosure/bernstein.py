@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 from functools import cache
 from itertools import pairwise
-from math import comb
+from math import comb, lcm
 from typing import final
 
 from flint import fmpq, fmpq_poly
@@ -106,37 +106,61 @@ class Bernstein:
         n = self.degree
         return [fraction(self.form[j]) / comb(n, j) for j in range(n + 1)]
 
+    def _integers(self) -> list[int]:
+        """Bernstein coefficients times a common positive factor."""
+        numerators = [int(c) for c in self.form.numer().coeffs()]
+        numerators += [0] * (self.degree + 1 - len(numerators))
+        return [w * a for w, a in zip(_unscaling(self.degree), numerators, strict=True)]
+
     def is_nonnegative(self, depth: int = 4) -> bool:
         """Whether p >= 0 on [0, 1] is proved with at most `depth` halvings; False proves nothing."""
         if all(c >= 0 for c in self.form.numer().coeffs()):
             return True
-        if depth == 0 or self.form[0] < 0 or self.form[self.degree] < 0:
-            return False
-        left, right = split(self.controls())
-        return all(Bernstein.from_controls(half).is_nonnegative(depth - 1) for half in (left, right))
-
-    def lower_bound(self, depth: int = 3) -> Fraction:
-        """Return a proved lower bound of p on [0, 1], tighter with each of `depth` halvings."""
-        return lower_bound(self.controls(), depth)
-
-    def upper_bound(self, depth: int = 3) -> Fraction:
-        """Return a proved upper bound of p on [0, 1]."""
-        return -lower_bound([-c for c in self.controls()], depth)
+        return _is_nonnegative(self._integers(), depth)
 
 
-def split(controls: Sequence[Fraction]) -> tuple[list[Fraction], list[Fraction]]:
-    """De Casteljau at 1/2: Bernstein coefficients of the two halves."""
+@cache
+def _unscaling(degree: int) -> tuple[int, ...]:
+    """Positive integers proportional to 1 / binomial(degree, j)."""
+    common = lcm(*(comb(degree, j) for j in range(degree + 1)))
+    return tuple(common // comb(degree, j) for j in range(degree + 1))
+
+
+def _is_nonnegative(controls: list[int], depth: int) -> bool:
+    if min(controls) >= 0:
+        return True
+    if depth == 0 or controls[0] < 0 or controls[-1] < 0:
+        return False
+    return all(_is_nonnegative(half, depth - 1) for half in split(controls))
+
+
+def split(controls: Sequence[int]) -> tuple[list[int], list[int]]:
+    """De Casteljau at 1/2, scaled by 2^n: Bernstein coefficients of the two halves, n the degree."""
     row, left, right = list(controls), [], []
-    while row:
-        left.append(row[0])
-        right.append(row[-1])
-        row = [(a + b) / 2 for a, b in pairwise(row)]
+    for power in range(len(controls) - 1, -1, -1):
+        left.append(row[0] << power)
+        right.append(row[-1] << power)
+        row = [a + b for a, b in pairwise(row)]
     return left, right[::-1]
 
 
-def lower_bound(controls: Sequence[Fraction], depth: int) -> Fraction:
-    """Return a proved lower bound of the polynomial with these Bernstein coefficients."""
+def lower_bound(controls: Sequence[Fraction | float], depth: int) -> Fraction:
+    """Return a proved lower bound of a polynomial on [0, 1] from its Bernstein coefficients.
+
+    Tighter with each of `depth` halvings.
+    """
+    exact = [Fraction(c) for c in controls]
+    common = lcm(*(c.denominator for c in exact))
+    least, power = _least([int(c * common) for c in exact], depth)
+    return Fraction(least, common << power)
+
+
+def _least(controls: list[int], depth: int) -> tuple[int, int]:
+    """Lower bound as (integer, power): integer / 2^power."""
     least = min(controls)
     if depth == 0 or least in (controls[0], controls[-1]):
-        return least
-    return min(lower_bound(half, depth - 1) for half in split(controls))
+        return least, 0
+    halves = [_least(half, depth - 1) for half in split(controls)]
+    n = len(controls) - 1
+    shared = max(power for _, power in halves)
+    return min(value << (shared - power) for value, power in halves), shared + n

@@ -1,10 +1,11 @@
 """Proved sub- and supersolutions of differential inequalities driven by a schedule.
 
 A *witness* is a sequence of steps. On each step every component of a comparison system is a
-polynomial; steps meet with equal values. Floating-point collocation proposes a step with a
-small slack in the safe direction; the system's differential inequalities are then polynomial
-inequalities on the step, proved by Bernstein coefficients in exact rationals. A step that cannot
-be proved is halved. What is returned is therefore true as it stands, whatever proposed it.
+polynomial; steps meet with equal values, or a bound jumps to its loose side. Floating-point
+collocation proposes a step with a small slack in the safe direction; the system's differential
+inequalities are then polynomial inequalities on the step, proved by Bernstein coefficients in
+exact rationals. A step that cannot be proved is halved. What is returned is therefore true as
+it stands, whatever proposed it.
 """
 
 from __future__ import annotations
@@ -85,6 +86,11 @@ class ComparisonSystem(ABC):
     @abstractmethod
     def choices(self, state: Sequence[float], peak: float) -> Sequence[Modes]:
         """Forms of the inequalities to try from this state, best first; `peak`: see `rate`."""
+
+    def loosened(self, state: Sequence[float], modes: Modes) -> tuple[float, ...]:
+        """State at the start of a step in these modes: bounds may jump to their loose side."""
+        del modes
+        return tuple(state)
 
     @abstractmethod
     def rate(
@@ -207,7 +213,8 @@ class Stepper:
         peak = _peak(piece.shape)
         for modes in self.system.choices(state, peak):
             self.attempts += 1
-            proposal = self._propose(piece.shape, part, float(stop - start), state, modes)
+            first = self.system.loosened(state, modes)
+            proposal = self._propose(piece.shape, part, float(stop - start), first, modes)
             if proposal is None:
                 continue
             controls = {
@@ -237,9 +244,10 @@ class Stepper:
             return np.array([system.rate(g, row, modes, peak, slack) for g, row in rows])
 
         try:
-            controls = propose(
-                lambda points: rates(points, node_gains, self.slack), np.array(state), length, self.degree
-            )
+            with np.errstate(all="ignore"):
+                controls = propose(
+                    lambda points: rates(points, node_gains, self.slack), np.array(state), length, self.degree
+                )
             if controls is None or not np.all(np.isfinite(controls)):
                 return None
             controls[0] = state  # steps meet exactly

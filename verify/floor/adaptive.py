@@ -15,20 +15,25 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
+from math import exp
 from typing import final
+
+import numpy as np
 
 from ..enclosure.balls import fraction_above, fraction_below
 from ..enclosure.bernstein import Bernstein, rational
-from ..enclosure.stepping import ComparisonSystem, Modes
-from .comparison import BLIND, ONE, TWO, angle_factor, angle_factor_float
+from ..enclosure.stepping import Modes
+from .adaptive_tail import AdaptiveTailSystem
+from .comparison import BLIND, ONE, ROUND_UP, TWO, angle_factor, angle_factor_float
 from .sets import InitialSet
+from .witness import Array, LawComparison
 
 NEGLIGIBLE = 0.02
 """A lower bound of s below this share of the upper one is given up: it no longer helps."""
 
 
 @final
-class AdaptiveSystem(ComparisonSystem):
+class AdaptiveSystem(LawComparison):
     """Components y, s, k, r and their upper twins Y, Z, L, U (Z bounds s, L bounds k, U bounds R).
 
     Parameters
@@ -43,6 +48,7 @@ class AdaptiveSystem(ComparisonSystem):
 
     names = ("y", "s", "k", "r", "Y", "Z", "L", "U")
     signs = (-1, -1, -1, -1, 1, 1, 1, 1)
+    decaying = ()
 
     def __init__(
         self,
@@ -68,6 +74,34 @@ class AdaptiveSystem(ComparisonSystem):
             initial.y_low, initial.s_low, fraction_below(k0), fraction_below(R0),
             initial.y_high, initial.s_high, fraction_above(k0), fraction_above(R0),
         )  # fmt: skip
+
+    def contraction(self, period: float) -> float:
+        """exp(-lambda T): what R forgets over a period."""
+        return exp(-self._lam * period)
+
+    def tail(self, state: Sequence[float]) -> tuple[AdaptiveTailSystem, tuple[float, ...]]:
+        """Return the upper half of the system with k held at its lower bound."""
+        _, _, k, r, Y, Z, L, U = state
+        system = AdaptiveTailSystem(
+            decay=self.decay, learning_rate=self.learning_rate, weight=self.weight, coupling=self.coupling
+        )
+        return system, (k, r, Y, Z, L, U)
+
+    def bounds(self, low: dict[str, Array], high: dict[str, Array]) -> dict[str, Array]:
+        """Read the bounds off the components."""
+        return {
+            "cosine_gap": np.minimum(high["Z"] ** 2 * ROUND_UP, 2.0),
+            "weighted_rate": high["Y"],
+            "filter_low": low["r"],
+            "filter_high": high["U"],
+            "gain_low": low["k"],
+            "gain_high": high["L"],
+        }
+
+    def loosened(self, state: Sequence[float], modes: Modes) -> tuple[float, ...]:
+        """Give up the lower bound of s where it no longer helps."""
+        y, s, *rest = state
+        return (y, 0.0 if modes[0] == "zero" else s, *rest)
 
     def choices(self, state: Sequence[float], peak: float) -> Sequence[Modes]:
         """How to bound f from above, best now first; whether the lower bound of s is kept."""
@@ -100,8 +134,6 @@ class AdaptiveSystem(ComparisonSystem):
         """Floats; each bound pushed outwards by `slack` times its own scale."""
         y, s, k, r, Y, Z, L, U = state
         lam, c, G = self._lam, self.coupling, gain_square
-        if modes[0] == "zero":
-            s = 0.0
         S, T = s * s, Z * Z
         scale = slack * peak * (L + lam)
         low_pull, high_pull = 0.5 * G * L * (2.0 - S), 0.5 * G * k * (2.0 - T)
@@ -136,8 +168,6 @@ class AdaptiveSystem(ComparisonSystem):
         y, s, k, r, Y, Z, L, U = x
         dy, ds, dk, dr, dY, dZ, dL, dU = dx
         G, lam, c = gain_square, self._lam_exact, self._c
-        if modes[0] == "zero":
-            s = ds = Bernstein.constant(0)
         S, T = s * s, Z * Z
         room_low, room_high = TWO - S, TWO - T
         yield room_high
@@ -147,6 +177,8 @@ class AdaptiveSystem(ComparisonSystem):
         yield dY + high_pull * Y
         if modes[0] == "kept":
             yield -ds - Y * angle_factor(S) * c - low_pull * s
+        else:
+            yield -s
         yield dZ - Y * angle_factor(T) * c + high_pull * Z
         yield G * room_high - r * lam - dr
         yield dU + U * lam - G * room_low

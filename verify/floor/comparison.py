@@ -22,6 +22,7 @@ At a step's start a bound may jump to its loose side.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
@@ -38,8 +39,12 @@ from ..enclosure.bernstein import Bernstein
 ONE = Bernstein.constant(1)
 TWO = Bernstein.constant(2)
 ZERO = Bernstein.constant(0)
-BLIND = 1.999
-"""Above this S = 1 - b0 the error-angle bound counts as having reached 2 pi."""
+BLIND = 1.98
+"""Above this S = 1 - b0 (337 deg) the error-angle bound counts as having reached 2 pi."""
+NO_BOUND = 1.5
+"""A value of s that every trajectory stays below (s <= sqrt 2): no bound at all."""
+ROUND_UP = 1 + 1e-14
+"""Covers the rounding of a few float operations on positive numbers (each 1.2e-16 relative)."""
 
 
 @final
@@ -64,6 +69,16 @@ class BodyBounds:
     def of(cls, body: RigidBody) -> BodyBounds:
         """Bounds of one inertia, within about 1e-12 of its principal inertias."""
         return cls(least_eigenvalue_below(body.exact_inertia), greatest_eigenvalue_above(body.exact_inertia))
+
+    def widened(self, tolerance: Sequence[Sequence[Fraction]]) -> BodyBounds:
+        """Bounds that also hold if each entry of J is off by at most the given tolerance.
+
+        A symmetric perturbation moves an eigenvalue by at most its norm, at most the greatest row sum.
+        """
+        shift = max(sum((abs(x) for x in row), Fraction(0)) for row in tolerance)
+        if shift >= self.least:
+            raise ValueError("the inertia's tolerance reaches a singular inertia: nothing follows")
+        return BodyBounds(self.least - shift, self.greatest + shift)
 
     @property
     def coupling(self) -> float:

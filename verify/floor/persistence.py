@@ -16,17 +16,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
+from math import exp
 from typing import final
+
+import numpy as np
 
 from ..enclosure.balls import fraction_below
 from ..enclosure.bernstein import Bernstein, rational
-from ..enclosure.stepping import ComparisonSystem, Modes
-from .comparison import BLIND, ONE, TWO, angle_factor, angle_factor_float
+from ..enclosure.stepping import Modes
+from .comparison import BLIND, NO_BOUND, ONE, ROUND_UP, TWO, angle_factor, angle_factor_float
 from .sets import InitialSet
+from .witness import Array, LawComparison
 
 
 @final
-class PersistenceSystem(ComparisonSystem):
+class PersistenceSystem(LawComparison):
     """Components K, y, s, v, z, r of the module's inequalities.
 
     Parameters
@@ -34,16 +38,18 @@ class PersistenceSystem(ComparisonSystem):
     decay : lambda, 1/s
     initial_filter : R(0), s
     coupling : c >= 1/sqrt(8 Jmin)
-    tail : drop the factors A(S) and 1 - S/4, so that (y, s, v, z) may be scaled down together
+    scalable : drop the factors A(S) and 1 - S/4, so that (y, s, v, z) may be scaled down together
     """
 
     names = ("K", "y", "s", "v", "z", "r")
     signs = (-1, 1, 1, 1, 1, -1)
+    decaying = (("y", "s"), ("v", "z"))
 
     def __init__(
-        self, *, decay: Fraction, initial_filter: Fraction, coupling: float, tail: bool = False
+        self, *, decay: Fraction, initial_filter: Fraction, coupling: float, scalable: bool = False
     ) -> None:
-        self.decay, self.initial_filter, self.coupling, self.tail = decay, initial_filter, coupling, tail
+        self.decay, self.initial_filter, self.coupling = decay, initial_filter, coupling
+        self.scalable = scalable
         self._lam, self._R0 = float(decay), float(initial_filter)
         half = Bernstein.constant(Fraction(1, 2))
         self._half, self._quarter = half, half * half
@@ -56,17 +62,50 @@ class PersistenceSystem(ComparisonSystem):
         y, s = initial.y_high, initial.s_high
         return (K, y, s, y, s, fraction_below(self.initial_filter))
 
+    def tail(self, state: Sequence[float]) -> tuple[PersistenceSystem, tuple[float, ...]]:
+        """Return the same inequalities without the factors that a scaling would break."""
+        system = PersistenceSystem(
+            decay=self.decay, initial_filter=self.initial_filter, coupling=self.coupling, scalable=True
+        )
+        if state[2] * state[2] >= BLIND:
+            system.decaying = (("v", "z"),)
+            system.free = ("y", "s")
+        return system, tuple(state)
+
+    def contraction(self, period: float) -> float:
+        """exp(-lambda T): what R forgets over a period."""
+        return exp(-self._lam * period)
+
+    def bounds(self, low: dict[str, Array], high: dict[str, Array]) -> dict[str, Array]:
+        """Take the better of the two bounds of angle and rate."""
+        r = np.maximum(low["r"], 0.0)
+        share = self._R0 / r * ROUND_UP
+        angle = np.where(high["s"] < NO_BOUND, high["s"] ** 2, 2.0)
+        return {
+            "cosine_gap": np.minimum(np.minimum(angle, high["z"] ** 2 * share), 2.0) * ROUND_UP,
+            "weighted_rate": np.minimum(high["y"], high["v"] * np.sqrt(share)) * ROUND_UP,
+            "filter_low": r,
+            "filter_high": ROUND_UP / low["K"],
+            "gain_low": low["K"],
+            "gain_high": ROUND_UP / r,
+        }
+
     def choices(self, state: Sequence[float], peak: float) -> Sequence[Modes]:
         """Order the bounds of the angle by their value now."""
         _, _, s, _, z, r = state
         angle = "angle" if s * s < BLIND else "blind"
-        sigma = self._R0 * z * z / r
         if peak == 0.0:
-            return ((angle, "none"),) if angle == "blind" else ((angle, "none"), ("blind", "none"))
+            return ((angle, "none"),)
+        sigma = self._R0 * z * z / r
         filters = ["cascade"] if sigma < 2.0 else ["none", "cascade"]
         if angle == "angle":
             filters.insert(0 if s * s < sigma else 1, "angle")
         return tuple((angle, f) for f in filters)
+
+    def loosened(self, state: Sequence[float], modes: Modes) -> tuple[float, ...]:
+        """Give up s where its bound has reached sqrt 2."""
+        K, y, s, v, z, r = state
+        return (K, y, NO_BOUND if modes[0] == "blind" else s, v, z, r)
 
     def rate(
         self, gain_square: float, state: Sequence[float], modes: Modes, peak: float, slack: float
@@ -80,11 +119,11 @@ class PersistenceSystem(ComparisonSystem):
         if modes[0] == "blind":
             y_rate = s_rate = 0.0
         else:
-            factor = 1.0 if self.tail else angle_factor_float(S)
+            factor = 1.0 if self.scalable else angle_factor_float(S)
             y_rate = -pull * y + slack * peak * K * y
             s_rate = c * y * factor - pull * s + slack * (peak * K * s + 0.1 * c * y)
         v_rate = -0.5 * lam * v * (1.0 - slack)
-        bend = 1.0 if self.tail else 1.0 - 0.25 * R0 * K * z * z
+        bend = 1.0 if self.scalable else 1.0 - 0.25 * R0 * K * z * z
         z_rate = -0.5 * lam * z * (1.0 - slack) + c * v * bend + slack * 0.5 * c * v
         sigma = {"angle": S, "cascade": R0 * z * z / r, "none": 2.0}[modes[1]]
         r_rate = -lam * r + G * (2.0 - sigma) - slack * (lam * r + (peak if modes[1] != "none" else 0.0))
@@ -106,10 +145,13 @@ class PersistenceSystem(ComparisonSystem):
             yield room
             yield s
             yield dy + pull * y
-            drift = y if self.tail else y * angle_factor(S)
+            drift = y if self.scalable else y * angle_factor(S)
             yield ds - drift * c + pull * s
+        else:
+            yield dy
+            yield s - ONE * rational(NO_BOUND)
         yield dv + v * self._half * lam
-        bend = ONE if self.tail else ONE - K * z * z * self._quarter * self._R0_exact
+        bend = ONE if self.scalable else ONE - K * z * z * self._quarter * self._R0_exact
         yield dz + z * self._half * lam - v * bend * c
         yield z
         yield r

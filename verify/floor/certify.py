@@ -1,0 +1,257 @@
+"""Certify the floor of the filter state over an initial set: transient, tail, and bins.
+
+The answer is a list of witnesses, one a bin of the initial set, each true as it stands.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from heapq import heapify, heappop, heappush
+from itertools import count
+from typing import final
+
+from ...models.laws import AdaptiveScaling, Law, PersistenceFilter
+from ...models.schedule import Schedule
+from ..enclosure.stepping import CannotProceedError, ComparisonSystem, Stepper
+from .adaptive import AdaptiveSystem
+from .comparison import BodyBounds
+from .persistence import PersistenceSystem
+from .sets import InitialSet
+from .tail import Tail, find_tail
+from .witness import LawComparison, Witness
+
+
+@final
+@dataclass(frozen=True)
+class FloorOptions:
+    """How hard to try.
+
+    Attributes
+    ----------
+    degree : degree of the witness's polynomials
+    slack : relative slack of the inequalities, traded against the number of steps
+    max_bins : bins of the initial set (only the adaptive law needs more than one)
+    max_periods : periods after which no tail is looked for any more
+    """
+
+    degree: int = 6
+    slack: float = 2e-4
+    max_bins: int = 24
+    max_periods: int = 40
+
+    def __post_init__(self) -> None:
+        if not 2 <= self.degree <= 12:
+            raise ValueError(f"degree must lie between 2 and 12, received {self.degree}")
+        if not 0 < self.slack < 0.1:
+            raise ValueError(f"slack must lie between 0 and 0.1, received {self.slack}")
+        if self.max_bins < 1 or self.max_periods < 1:
+            raise ValueError("max_bins and max_periods must be at least 1")
+
+
+@final
+@dataclass(frozen=True)
+class Floor:
+    """A certified floor of R and everything that follows from its witnesses.
+
+    Attributes
+    ----------
+    law, bounds, schedule, initial : what it speaks about
+    witnesses : one a bin; together they cover `initial`
+    horizon : end of the time covered, s, or None for all time
+    """
+
+    law: Law
+    bounds: BodyBounds
+    schedule: Schedule
+    initial: InitialSet
+    witnesses: tuple[Witness, ...]
+    horizon: Fraction | None
+
+    @cached_property
+    def value(self) -> float:
+        """R >= value, s, over the time covered, for every trajectory from the initial set."""
+        return min(w.floor for w in self.witnesses)
+
+    @property
+    def steps(self) -> int:
+        """Number of proved steps."""
+        return sum(sum(1 for _ in w.all_steps()) for w in self.witnesses)
+
+    @property
+    def stuck(self) -> Fraction | None:
+        """Earliest instant from which nothing could be proved, s, or None."""
+        return min((w.stuck for w in self.witnesses if w.stuck is not None), default=None)
+
+
+def comparison_system(law: Law, bounds: BodyBounds) -> LawComparison | None:
+    """Return the comparison system of a law, or None for laws that have none."""
+    c = bounds.coupling
+    if isinstance(law, PersistenceFilter):
+        return PersistenceSystem(decay=law.lambda_, initial_filter=law.R0, coupling=c)
+    if isinstance(law, AdaptiveScaling):
+        return AdaptiveSystem(
+            decay=law.lambda_,
+            initial_filter=law.R0,
+            learning_rate=law.gamma,
+            initial_gain=law.k0,
+            weight=law.a,
+            coupling=c,
+        )
+    return None
+
+
+def certify_floor(
+    law: Law,
+    bounds: BodyBounds,
+    schedule: Schedule,
+    initial: InitialSet,
+    *,
+    horizon: Fraction | None = None,
+    options: FloorOptions | None = None,
+) -> Floor | None:
+    """Certify R >= value > 0 over the initial set, or return None for a law without comparison system.
+
+    Parameters
+    ----------
+    horizon : Fraction or None
+        End of the time asked for, s; None asks for all time (periodic schedules only). A
+        periodic schedule is also certified for all time where a tail is found.
+
+    Returns
+    -------
+    Floor
+        Its `stuck` tells where nothing could be proved any more, if anywhere; its `horizon`, how
+        far the certificate reaches.
+    """
+    options = options or FloorOptions()
+    system = comparison_system(law, bounds)
+    if system is None:
+        return None
+    if horizon is None and schedule.period is None:
+        horizon = schedule.end
+    run = _Run(system, schedule, horizon, options)
+    if isinstance(system, PersistenceSystem):
+        witnesses: tuple[Witness, ...] = (run.complete(Witness(system, initial, ())),)
+    else:
+        witnesses = run.binned(initial, bounds)
+    ends = [w.stuck if w.stuck is not None else w.end for w in witnesses]
+    reached = None if all(w.tail is not None for w in witnesses) else min(ends)
+    return Floor(law, bounds, schedule, initial, witnesses, reached)
+
+
+@final
+@dataclass(frozen=True)
+class _Run:
+    system: LawComparison
+    schedule: Schedule
+    horizon: Fraction | None
+    options: FloorOptions
+
+    def _stepper(self, system: ComparisonSystem | None = None) -> Stepper:
+        return Stepper(system or self.system, degree=self.options.degree, slack=self.options.slack)
+
+    def complete(self, early: Witness) -> Witness:
+        """Go on from an early witness to the horizon, or to a tail as soon as that costs nothing."""
+        if early.stuck is not None:
+            return early
+        steps, least = list(early.steps), early.floor
+        period = self.schedule.period
+        for start, stop in self._spans(early.end):
+            state = steps[-1].end_state() if steps else None
+            values = self.system.start(early.initial) if state is None else tuple(state.values())
+            try:
+                steps += self._stepper().run(self.schedule, start, stop, values)
+            except CannotProceedError as stuck:
+                return Witness(self.system, early.initial, (*steps, *stuck.steps), stuck=stuck.time)
+            if period is None:
+                continue
+            least = min(least, *(min(s.controls["r"]) for s in steps if s.start >= start))
+            tail = self._tail(stop, tuple(steps[-1].end_state().values()))
+            if tail is not None:
+                lowest = min(min(s.controls["r"]) for s in tail.steps)
+                if lowest >= 0.999 * least or stop >= self.options.max_periods * period:
+                    return Witness(self.system, early.initial, tuple(steps), tail)
+        return Witness(self.system, early.initial, tuple(steps))
+
+    def _tail(self, start: Fraction, state: tuple[float, ...]) -> Tail | None:
+        system, first = self.system.tail(state)
+        return find_tail(system, self.schedule, start, first, self._stepper(system))
+
+    def _spans(self, start: Fraction) -> list[tuple[Fraction, Fraction]]:
+        """From `start` on: to the end of each period, or at once to a finite schedule's horizon."""
+        period = self.schedule.period
+        if period is None:
+            assert self.horizon is not None
+            return [(start, self.horizon)] if start < self.horizon else []
+        first = start // period + 1
+        ends = [n * period for n in range(first, max(first, self.options.max_periods) + 1)]
+        return list(zip([start, *ends[:-1]], ends, strict=True))
+
+    def early(self, initial: InitialSet, stop: Fraction) -> Witness:
+        """Return a witness over [0, stop]."""
+        try:
+            steps = self._stepper().run(self.schedule, Fraction(0), stop, self.system.start(initial))
+        except CannotProceedError as stuck:
+            return Witness(self.system, initial, stuck.steps, stuck=stuck.time)
+        return Witness(self.system, initial, tuple(steps))
+
+    def binned(self, initial: InitialSet, bounds: BodyBounds) -> tuple[Witness, ...]:
+        """Halve the worst bin again and again: most by the floor of the first windows, then by all."""
+        stop = self._early_end()
+        weight = bounds.coupling * float(stop) / 4
+        most = 1 + 3 * (self.options.max_bins - 1) // 4
+        first = self._halve([self.early(initial, stop)], weight, most, lambda b: self.early(b, stop))
+        return tuple(
+            self._halve(
+                [self.complete(w) for w in first],
+                weight,
+                self.options.max_bins,
+                lambda b: self.complete(self.early(b, stop)),
+            )
+        )
+
+    @staticmethod
+    def _halve(
+        witnesses: list[Witness], weight: float, most: int, prove: Callable[[InitialSet], Witness]
+    ) -> list[Witness]:
+        order = count()
+        heap = [(_merit(w), next(order), w) for w in witnesses]
+        heapify(heap)
+        while len(heap) < most:
+            halves = halved(heap[0][2].initial, weight)
+            if len(halves) == 1:
+                break
+            heappop(heap)
+            for half in halves:
+                witness = prove(half)
+                heappush(heap, (_merit(witness), next(order), witness))
+        return [w for _, _, w in sorted(heap)]
+
+    def _early_end(self) -> Fraction:
+        """End of the third window's rise: the least R is mostly seen by then."""
+        span = self.schedule.end * (1 if self.schedule.period is None else 4)
+        openings = [w.on for w in self.schedule.support_between(Fraction(0), span)][:3]
+        rise = next(p for p in self.schedule.pieces_between(openings[-1], span) if p.start == openings[-1])
+        return rise.end if self.horizon is None else min(rise.end, self.horizon)
+
+
+def _merit(witness: Witness) -> float:
+    """Floor of an early witness; where it got stuck, the earlier the worse."""
+    return witness.floor if witness.stuck is None else float(witness.stuck) * 1e-9
+
+
+def halved(initial: InitialSet, weight: float) -> list[InitialSet]:
+    """Two halves across the wider of the angle and `weight` times the rate; one if it is a point."""
+    ds, dy = initial.s_high - initial.s_low, initial.y_high - initial.y_low
+    if max(ds, weight * dy) < 1e-6:
+        return [initial]
+    if ds >= weight * dy:
+        middle = (initial.s_low + initial.s_high) / 2
+        edges = [(initial.s_low, middle), (middle, initial.s_high)]
+        return [InitialSet(a, b, initial.y_low, initial.y_high, initial.description) for a, b in edges]
+    middle = (initial.y_low + initial.y_high) / 2
+    edges = [(initial.y_low, middle), (middle, initial.y_high)]
+    return [InitialSet(initial.s_low, initial.s_high, a, b, initial.description) for a, b in edges]
