@@ -186,7 +186,7 @@ class Stepper:
     def _piece(self, piece: Piece, state: Sequence[float]) -> list[Step]:
         key = (piece.shape, piece.length)
         n = self._levels.get(key, 1)
-        j, steps = 0, []
+        j, steps = 0, list[Step]()
         while j < n:
             step = self._attempt(piece, (j, n), state)
             if step is None:

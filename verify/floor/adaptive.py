@@ -48,7 +48,7 @@ class AdaptiveSystem(LawComparison):
 
     names = ("y", "s", "k", "r", "Y", "Z", "L", "U")
     signs = (-1, -1, -1, -1, 1, 1, 1, 1)
-    decaying = ()
+    decaying: tuple[tuple[str, ...], ...] = ()
 
     def __init__(
         self,

@@ -27,8 +27,8 @@ class AdaptiveTailSystem(PeriodicSystem):
 
     names = ("k", "r", "Y", "Z", "L", "U")
     signs = (-1, -1, 1, 1, 1, 1)
-    decaying = (("Y", "Z"),)
-    free = ("L",)
+    decaying: tuple[tuple[str, ...], ...] = (("Y", "Z"),)
+    free: tuple[str, ...] = ("L",)
 
     def __init__(
         self, *, decay: Fraction, learning_rate: Fraction, weight: Fraction, coupling: float

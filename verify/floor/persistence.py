@@ -43,7 +43,7 @@ class PersistenceSystem(LawComparison):
 
     names = ("K", "y", "s", "v", "z", "r")
     signs = (-1, 1, 1, 1, 1, -1)
-    decaying = (("y", "s"), ("v", "z"))
+    decaying: tuple[tuple[str, ...], ...] = (("y", "s"), ("v", "z"))
 
     def __init__(
         self, *, decay: Fraction, initial_filter: Fraction, coupling: float, scalable: bool = False

@@ -8,8 +8,11 @@ from fractions import Fraction
 from typing import final
 
 from ...models.rigid_body import RigidBody
-from ..enclosure.balls import ball, float_above, float_below, sqrt_above, sqrt_below
+from ..enclosure.balls import ball, float_above, float_below, fraction_above, sqrt_above, sqrt_below
 from .comparison import BodyBounds
+
+LARGEST_S = 1.4142135623730954
+"""The float above sqrt 2, the largest value of s = sqrt(1 - b0)."""
 
 
 @final
@@ -37,26 +40,45 @@ class InitialSet:
             raise ValueError("an initial set needs 0 <= s_low <= s_high <= sqrt 2 and 0 <= y_low <= y_high")
 
     @classmethod
-    def from_angle(cls, error_angle: Fraction, y_high: Fraction) -> InitialSet:
-        """All states with 2 acos(b0) <= error_angle (rad, in [0, 2 pi]) and |Omega(0)|_J <= y_high."""
-        s_high = float_above((1 - (ball(error_angle) / 2).cos()).sqrt()) if error_angle > 0 else 0.0
-        text = f"2 acos(b0) <= {float(error_angle):.6g} rad, |Omega(0)|_J <= {float(y_high):.6g}"
-        return cls(0.0, s_high, 0.0, float_above(ball(y_high)) if y_high > 0 else 0.0, text)
-
-    @classmethod
-    def from_angle_and_rate(
-        cls, bounds: BodyBounds, error_angle: Fraction, rate: Fraction, gain_term: Fraction = Fraction(0)
+    def from_bounds(
+        cls,
+        bounds: BodyBounds,
+        *,
+        max_angle_deg: Fraction,
+        max_rate: Fraction | None = None,
+        max_weighted_rate: Fraction | None = None,
+        gain_term: Fraction = Fraction(0),
     ) -> InitialSet:
-        """All states with 2 acos(b0) <= error_angle (rad) and |w(0)| <= rate (rad/s).
+        """All states with a bounded error angle and rate; no bound on the rate means at rest.
 
-        `gain_term` is g(0)^2 kappa(0) (1/s), zero where the schedule starts closed; then
-        y <= sqrt(Jmax) (rate + 2 g(0)^2 kappa(0) max |bv|).
+        Parameters
+        ----------
+        bounds : principal inertias
+        max_angle_deg : bound on 2 acos(b0), deg, in [0, 360]
+        max_rate : bound on |w(0)|, rad/s; then y <= sqrt(Jmax) (|w| + 2 g^2 kappa max |bv|)
+        max_weighted_rate : bound on |Omega(0)|_J, sqrt(kg m^2) rad/s
+        gain_term : g(0)^2 kappa(0), 1/s: zero where the schedule starts closed
         """
-        base = cls.from_angle(error_angle, Fraction(0))
-        reach = rate + 2 * gain_term  # |bv| <= 1
-        y_high = sqrt_above(bounds.greatest * reach * reach)
-        text = f"2 acos(b0) <= {float(error_angle):.6g} rad, |w(0)| <= {float(rate):.6g} rad/s"
-        return cls(0.0, base.s_high, 0.0, y_high, text)
+        if not 0 <= max_angle_deg <= 360:
+            raise ValueError(
+                f"the largest error angle must lie in [0, 360] deg, received {float(max_angle_deg):g}"
+            )
+        s_high = 0.0
+        if max_angle_deg > 0:
+            s_high = min(float_above((1 - (ball(max_angle_deg) / 360).cos_pi()).sqrt()), LARGEST_S)
+        reaches = []
+        if max_rate is not None or max_weighted_rate is None:
+            reach = (max_rate or Fraction(0)) + 2 * gain_term * _greatest_bv(s_high)
+            reaches.append(sqrt_above(bounds.greatest * reach * reach))
+        if max_weighted_rate is not None:
+            reaches.append(fraction_above(max_weighted_rate))
+        words = [f"2 acos(b0) <= {float(max_angle_deg):.6g} deg"]
+        words += [f"|w(0)| <= {float(max_rate):.6g} rad/s"] if max_rate is not None else []
+        if max_weighted_rate is not None:
+            words.append(f"|Omega(0)|_J <= {float(max_weighted_rate):.6g} sqrt(kg m^2) rad/s")
+        elif max_rate is None:
+            words.append("at rest")
+        return cls(0.0, s_high, 0.0, min(reaches), ", ".join(words))
 
     @classmethod
     def from_state(
@@ -80,11 +102,16 @@ class InitialSet:
         at_rest = gain_term == 0 and not any(rate)
         return cls(
             s_low,
-            min(s_high, 1.4142135623730954),
+            min(s_high, LARGEST_S),
             0.0 if at_rest else y_low,
             0.0 if at_rest else y_high,
             "the scenario's initial state",
         )
+
+
+def _greatest_bv(s_high: float) -> Fraction:
+    """Rational bound of |bv| = s sqrt(2 - s^2) over s <= s_high: s sqrt 2, at most 1."""
+    return min(Fraction(1), Fraction(s_high) * Fraction(LARGEST_S))
 
 
 def _root_bounds(square: object) -> tuple[float, float]:

@@ -1,0 +1,105 @@
+"""The certified floor reaches its targets, is close to the comparison system, and cannot be inflated."""
+
+from dataclasses import replace
+from fractions import Fraction as F
+
+import numpy as np
+import pytest
+from intermit.models.laws import QuaternionPD
+from intermit.models.schedule import Hermite, Window, build_schedule
+from intermit.verify.enclosure.stepping import Stepper, is_proved
+from intermit.verify.floor.certify import FloorOptions, certify_floor, comparison_system
+from intermit.verify.floor.comparison import BodyBounds
+from intermit.verify.floor.sets import InitialSet
+from problems import ADAPTIVE, CONVERGED_FILTER_FLOOR, J1, PERSISTENCE, paper_schedule
+from scipy.integrate import solve_ivp
+
+BOUNDS = BodyBounds.of(J1)
+EXAMPLE = InitialSet.from_bounds(BOUNDS, max_angle_deg=F(120), max_weighted_rate=F("0.3"))
+
+
+def test_persistence_filter_reaches_its_target():
+    floor = certify_floor(PERSISTENCE, BOUNDS, paper_schedule(), EXAMPLE)
+    assert floor.horizon is None  # for all time
+    assert 0.1480 <= floor.value < CONVERGED_FILTER_FLOOR
+
+
+@pytest.mark.slow
+def test_adaptive_law_reaches_its_target():
+    floor = certify_floor(ADAPTIVE, BOUNDS, paper_schedule(), EXAMPLE)
+    assert floor.horizon is None
+    assert 0.130 <= floor.value < CONVERGED_FILTER_FLOOR
+
+
+def test_bins_raise_the_adaptive_floor():
+    values = [
+        certify_floor(ADAPTIVE, BOUNDS, paper_schedule(), EXAMPLE, options=FloorOptions(max_bins=n)).value
+        for n in (1, 6)
+    ]
+    assert 0.09 < values[0] < values[1] < CONVERGED_FILTER_FLOOR
+
+
+def floating_floor(system, schedule, state, horizon):
+    """Least r of the comparison system by tight floating-point integration, best form at each instant."""
+    index, least, t = system.names.index("r"), np.inf, 0.0
+    for piece in schedule.pieces_between(F(0), horizon):
+        start, length = float(piece.start), float(piece.length)
+        shape = np.array([float(c) for c in reversed(piece.shape)] or [0.0])
+
+        def rate(t, x, start=start, length=length, shape=shape):
+            g2 = np.polyval(shape, (t - start) / length) ** 2
+            return system.rate(g2, x, system.choices(x, 1.0 if shape.any() else 0.0)[0], 1.0, 0.0)
+
+        found = solve_ivp(rate, (t, start + length), state, rtol=1e-10, atol=1e-12, max_step=0.05)
+        least, state, t = min(least, found.y[index].min()), found.y[:, -1], start + length
+    return least
+
+
+@pytest.mark.parametrize("law", [PERSISTENCE, ADAPTIVE])
+def test_floor_is_within_one_percent_of_the_comparison_system(law):
+    system = comparison_system(law, BOUNDS)
+    schedule = paper_schedule()
+    loose = floating_floor(system, schedule, system.start(EXAMPLE), F(56))
+    floor = certify_floor(law, BOUNDS, schedule, EXAMPLE, options=FloorOptions(max_bins=1))
+    assert 0.99 * loose <= floor.value <= loose * (1 + 1e-6)
+
+
+def test_a_step_with_a_raised_floor_is_not_proved():
+    system = comparison_system(PERSISTENCE, BOUNDS)
+    steps = Stepper(system).run(paper_schedule(), F(0), F(8), system.start(EXAMPLE))
+    assert all(is_proved(system, s) for s in steps)
+    refused = 0
+    for step in steps:
+        first, *rest = step.controls["r"]
+        raised = replace(step, controls={**step.controls, "r": (first, *(1.005 * c for c in rest))})
+        refused += not is_proved(system, raised)
+    assert refused == len(steps)
+
+
+def test_a_wide_set_stops_with_an_instant_not_a_number():
+    """From 300 deg with a fast spin the angle bound passes 2 pi: no claim beyond that time."""
+    wide = InitialSet.from_bounds(BOUNDS, max_angle_deg=F(300), max_weighted_rate=F(2))
+    floor = certify_floor(ADAPTIVE, BOUNDS, paper_schedule(), wide, options=FloorOptions(max_bins=2))
+    assert floor.stuck is not None
+    assert floor.horizon is not None
+    assert floor.horizon <= floor.stuck < 8
+
+
+def test_finite_tables_are_covered_to_the_horizon():
+    windows = [Window(F(8 * k) + F("0.01"), F(8 * k) + F("3.21")) for k in range(3)]
+    finite = build_schedule(windows, Hermite(F("0.01")))
+    floor = certify_floor(PERSISTENCE, BOUNDS, finite, EXAMPLE, horizon=F(24))
+    assert floor.horizon == 24
+    assert 0.148 < floor.value < CONVERGED_FILTER_FLOOR
+
+
+def test_laws_without_comparison_system_get_none():
+    law = QuaternionPD(proportional=F(1), derivative=F(1))
+    assert certify_floor(law, BOUNDS, paper_schedule(), EXAMPLE) is None
+
+
+def test_sets_hold_their_states():
+    state = InitialSet.from_state(J1, [F(1, 2)] * 4, [F(1, 10), F(0), F(0)])
+    assert state.s_low <= np.sqrt(0.5) <= state.s_high <= state.s_low + 1e-12
+    assert state.y_low <= np.sqrt(0.0305) <= state.y_high <= state.y_low + 1e-12
+    assert state.s_high <= EXAMPLE.s_high + 1e-12
