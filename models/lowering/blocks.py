@@ -1,0 +1,86 @@
+"""Functions of many samples, evaluated block by block in bounded memory."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .walk import Program, check_arguments
+
+Array = NDArray[np.float64]
+
+BLOCK = 4096
+"""Samples a block: a program's live buffers (some thirty of 32 kB) stay in the second-level cache."""
+
+
+class BlockFunction(ABC):
+    """A program over samples kept as a structure of arrays, one row a quantity.
+
+    Attributes
+    ----------
+    program : Program
+    uniform : frozenset of int
+        Arguments that hold one set of numbers for all samples; the others have one for each.
+    block : int
+        Samples a block.
+    """
+
+    def __init__(self, program: Program, *, uniform: Sequence[int] = (), block: int = BLOCK) -> None:
+        if block < 1:
+            raise ValueError(f"block must be at least 1 sample, received {block}")
+        unknown = sorted(set(uniform) - set(range(len(program.argument_sizes))))
+        if unknown:
+            raise ValueError(f"function {program.name} has no argument {unknown[0]} to be uniform")
+        self.program, self.uniform, self.block = program, frozenset(uniform), block
+        self._result_sizes = tuple(len(row) for row in program.results)
+
+    @abstractmethod
+    def _evaluate(self, rows: Sequence[Array], results: Sequence[Array], count: int) -> None:
+        """Write the results of `count` checked samples."""
+
+    def __call__(self, *arguments: Array) -> list[Array]:
+        """Evaluate (n_i, N) arrays, one row an element (uniform ones (n_i,)), into new (m_j, N) arrays."""
+        rows, count = self._check(arguments)
+        results = [np.empty((size, count)) for size in self._result_sizes]
+        self._evaluate(rows, results, count)
+        return results
+
+    def into(self, arguments: Sequence[Array], results: Sequence[Array]) -> None:
+        """Evaluate into existing (m_j, N) arrays, apart from the arguments; allocates nothing of size N."""
+        rows, count = self._check(arguments)
+        expected = [(size, count) for size in self._result_sizes]
+        if [r.shape for r in results] != expected:
+            raise ValueError(
+                f"function {self.program.name}: expected results of shape {expected}, "
+                f"received {[r.shape for r in results]}"
+            )
+        self._evaluate(rows, results, count)
+
+    def stream(self, blocks: Iterable[Sequence[Array]]) -> Iterator[list[Array]]:
+        """Results of each block of arguments in turn; they are overwritten by the next block.
+
+        Memory does not grow with the number of blocks: reduce a block (its minimum, its count of
+        violations) before asking for the next.
+        """
+        held: list[Array] = []
+        for arguments in blocks:
+            rows, count = self._check(arguments)
+            if not held or held[0].shape[1] < count:
+                held = [np.empty((size, count)) for size in self._result_sizes]
+            views = [h[:, :count] for h in held]
+            self._evaluate(rows, views, count)
+            yield views
+
+    def _check(self, arguments: Sequence[Array]) -> tuple[list[Array], int]:
+        rows = [np.asarray(a, dtype=float) for a in arguments]
+        check_arguments(self.program, [len(a) for a in rows])
+        counts = {a.shape[1] for i, a in enumerate(rows) if i not in self.uniform}
+        if len(counts) != 1:
+            raise ValueError(
+                f"function {self.program.name}: expected arguments with one number of samples, "
+                f"received {sorted(counts)}"
+            )
+        return rows, counts.pop()
