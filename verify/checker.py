@@ -565,23 +565,28 @@ class Loop:
     symbols: dict[str, Poly]
 
 
-def read_loop(law: Node, *, symbolic: bool, J: Matrix | None) -> Loop:
+def read_loop(data: Node, storage: Node, *, symbolic: bool, J: Matrix | None) -> Loop:
     """Set up the symbols for a law: its parameters as positive symbols or numbers, J symbols or numbers."""
+    law = data["law"]
+    weight = storage["weight"].number() if storage.has("weight") else None
     states = tuple(node.text() for node in law["states"].items())
-    signals = tuple(node.text() for node in law["signals"].items()) if law.has("signals") else ()
-    parameters = law["parameters"].keys() if law.has("parameters") else []
+    signals = tuple(node.text() for node in law["signals"].items())
+    parameters = [node.text() for node in law["parameters"].items()]
     timed = [name for signal in signals for name in (signal, f"{signal}_rate")]
-    positive = ["k_target", *(["R"] if "R" in states else []), *(parameters if symbolic else [])]
-    names = ["k_target", "s", *(parameters if symbolic else []), *states, "g", "g_rate", *timed]
+    positive = ["k_target", *(["R"] if "R" in states else []), *(["weight", *parameters] if symbolic else [])]
+    names = ["k_target", "s", *(["weight", *parameters] if symbolic else []), *states, "g", "g_rate", *timed]
     names += ["c", *ATTITUDE, *RATE, *(INERTIA if J is None else ())]
     ring = Ring(names, positive)
     symbols = {name: ring.symbol(name) for name in names if name not in ("c", "s", *RATE)}
     symbols["b0"] = ring.constant(1) - ring.symbol("c")
     for name in parameters:
-        value = law["parameters"][name].number() if not symbolic else None
+        value = data["parameters"][name].number() if not symbolic else None
         require(name not in symbols or symbolic, f"the name {name!r} is used twice")
         if value is not None:
             symbols[name] = ring.constant(value)
+    if weight is not None and not symbolic:
+        require(weight > 0 and "weight" not in symbols, "the weight must be positive, and no parameter")
+        symbols["weight"] = ring.constant(weight)
     entries = dict(zip(INERTIA, _upper(J, ring, symbols), strict=True))
     symbols.update(entries)
     table = [[entries[f"J{min(i, j)}{max(i, j)}"] for j in (1, 2, 3)] for i in (1, 2, 3)]
@@ -674,14 +679,14 @@ def inverse_matrix(A: Matrix) -> Matrix:
     return [[cofactor[j][i] / determinant for j in range(3)] for i in range(3)]
 
 
-def describe_law(law: Node, *, symbolic: bool) -> str:
+def describe_law(data: Node, *, symbolic: bool) -> str:
     """Return the law's name and parameters for people."""
-    names = law["parameters"].keys() if law.has("parameters") else []
+    law = data["law"]
+    names = [node.text() for node in law["parameters"].items()]
     if symbolic:
         return f"law {law['name'].text()}, every {', '.join(names)} > 0"
-    return f"law {law['name'].text()}, " + ", ".join(
-        f"{n} = {show(law['parameters'][n].number())}" for n in names
-    )
+    values = [f"{name} = {show(data['parameters'][name].number())}" for name in names]
+    return f"law {law['name'].text()}, {', '.join(values)}"
 
 
 # --- kind: identity of the derivative ----------------------------------------------------------
@@ -691,8 +696,8 @@ def describe_law(law: Node, *, symbolic: bool) -> str:
 def check_lyapunov_identity(data: Node, certificate: Node) -> list[str]:
     """V' equals a given expression identically, for every inertia and all positive parameters."""
     law, storage = data["law"], certificate["claim"]["storage"]
-    loop = read_loop(law["form"], symbolic=True, J=None)
-    result = differentiate(loop, law["form"], storage)
+    loop = read_loop(data, storage, symbolic=True, J=None)
+    result = differentiate(loop, law, storage)
     claimed = on_sphere(pick(result.outputs, storage["right_side"]))
     rest = on_sphere(result.rate - claimed)
     require(not rest.terms, f"V' differs from the claimed expression by {rest.text(6)}")
@@ -700,7 +705,7 @@ def check_lyapunov_identity(data: Node, certificate: Node) -> list[str]:
         f"V' = {claimed.text()}",
         f"identically, for V = {result.value.text()},",
         f"y = w + ({', '.join(p.text() for p in result.shift)}), c = 1 - b0,",
-        f"{describe_law(law['form'], symbolic=True)}, every inertia",
+        f"{describe_law(data, symbolic=True)}, every inertia",
     ]
 
 
@@ -715,42 +720,61 @@ def check_lyapunov_derivative(data: Node, certificate: Node) -> list[str]:
     semidefinite), as an identity on the unit sphere of quaternions, once for each vertex of the
     box of inertias (-V' - rho W is affine in J there).
     """
-    law, claim, witness = data["law"], certificate["claim"], certificate["witness"]
-    boxed = data.has("inertia_tolerance")
-    vertices = inertia_vertices(data)
-    loop = read_loop(law["form"], symbolic=False, J=None if boxed else vertices[0])
-    result = differentiate(loop, law["form"], claim["storage"])
+    claim = certificate["claim"]
     rho = claim["rate"].number()
     require(rho >= 0, "the rate must not be negative")
-    reference = on_sphere(pick(result.outputs, claim["storage"]["reference"]))
-    gap = -result.rate - reference.scaled(rho)
-    above_floor = _read_domain(loop, claim)
-    if above_floor:
-        ring = loop.ring
-        level = (ring.constant(1) + ring.symbol("s")) * ring.symbol("k_target").inverse()
-        gap = gap.substitute("R", level)
-    gap = on_sphere(gap)
-    sums = witness["sums"].items()
-    require(len(sums) == len(vertices), "expected one sum of squares for each vertex of the box of inertias")
-    for J, place in zip(vertices, sums, strict=True):
-        rest = on_sphere(_at_inertia(gap, loop, J if boxed else None) - _sum_of_squares(loop, place, claim))
+    problems = list(gaps(data, claim))
+    sums = certificate["witness"]["sums"].items()
+    require(len(sums) == len(problems), "expected one sum of squares for each vertex of the box of inertias")
+    for (gap, reference), place in zip(problems, sums, strict=True):
+        rest = on_sphere(gap - reference.scaled(rho) - _sum_of_squares(gap.ring, place, claim))
         require(not rest.terms, f"{place.path}: the sum of squares differs by {rest.text(4)}")
-    where = "R >= R_min for any R_min > 0, k_target = 1/R_min" if above_floor else "R > 0"
-    if "R" not in loop.states:
-        where = "all controller states"
-    gain = f", 0 <= g <= {show(claim['gain_bound'].number())}" if claim.has("gain_bound") else ""
     return [
-        f"V' <= -{show(rho)} W on every attitude and rate, {where}{gain},",
+        f"V' <= -{show(rho)} W on every attitude and rate, {_domain_text(data, claim)},",
+        *_about(data, claim),
+    ]
+
+
+def gaps(data: Node, claim: Node) -> Iterator[tuple[Poly, Poly]]:
+    """Derive (-V', W) on the domain of the claim, at each vertex of the box of inertias."""
+    storage, boxed = claim["storage"], data.has("inertia_tolerance")
+    vertices = inertia_vertices(data)
+    loop = read_loop(data, storage, symbolic=False, J=None if boxed else vertices[0])
+    ring = loop.ring
+    result = differentiate(loop, data["law"], storage)
+    pair = [-result.rate, on_sphere(pick(result.outputs, storage["reference"]))]
+    if _read_domain(loop, claim):
+        level = (ring.constant(1) + ring.symbol("s")) * ring.symbol("k_target").inverse()
+        pair = [p.substitute("R", level) for p in pair]
+    for J in vertices:
+        at = [on_sphere(_at_inertia(p, loop, J if boxed else None)) for p in pair]
+        yield at[0], at[1]
+
+
+def _about(data: Node, claim: Node) -> list[str]:
+    """Return what V, W and the coordinates are, with the law and the inertia."""
+    J = None if data.has("inertia_tolerance") else read_inertia(data)
+    loop = read_loop(data, claim["storage"], symbolic=False, J=J)
+    result = differentiate(loop, data["law"], claim["storage"])
+    return [
         f"for V = {result.value.text()},",
-        f"W = {reference.text()},",
+        f"W = {on_sphere(pick(result.outputs, claim['storage']['reference'])).text()},",
         f"y = w + ({', '.join(p.text() for p in result.shift)}), c = 1 - b0,",
-        describe_law(law["form"], symbolic=False) + ",",
+        describe_law(data, symbolic=False) + ",",
         describe_inertia(data),
     ]
 
 
+def _domain_text(data: Node, claim: Node) -> str:
+    states = [node.text() for node in data["law"]["states"].items()]
+    where = "R > 0" if "R" in states else "all controller states"
+    if claim["domain"].text() == "above floor":
+        where = "R >= R_min for any R_min > 0, k_target = 1/R_min"
+    return where + (f", 0 <= g <= {show(claim['gain_bound'].number())}" if claim.has("gain_bound") else "")
+
+
 def inertia_vertices(data: Node) -> list[Matrix]:
-    """Return the inertias at the vertices of the box of tolerances, or the one given; all positive definite."""
+    """Return the inertias at the vertices of the box of tolerances, or the one given, checked definite."""
     J = read_inertia(data)
     if not data.has("inertia_tolerance"):
         return [J]
@@ -802,9 +826,8 @@ def _at_inertia(p: Poly, loop: Loop, J: Matrix | None) -> Poly:
     return p
 
 
-def _sum_of_squares(loop: Loop, place: Node, claim: Node) -> Poly:
+def _sum_of_squares(ring: Ring, place: Node, claim: Node) -> Poly:
     """Return sum of factors times z'Gz, every G checked to be positive semidefinite."""
-    ring = loop.ring
     result = ring.constant(0)
     for term in place.items():
         basis = [_monomial(ring, node.text()) for node in term["basis"].items()]
@@ -814,7 +837,7 @@ def _sum_of_squares(loop: Loop, place: Node, claim: Node) -> Poly:
         for i, left in enumerate(basis):
             row = total([basis[j].scaled(gram[i][j]) for j in range(len(basis))], ring)
             form = form + left * row
-        result = result + _factor(loop, term["factors"], claim) * form
+        result = result + _factor(ring, term["factors"], claim) * form
     return result
 
 
@@ -826,14 +849,14 @@ def _monomial(ring: Ring, text: str) -> Poly:
     return result
 
 
-def _factor(loop: Loop, factors: Node, claim: Node) -> Poly:
+def _factor(ring: Ring, factors: Node, claim: Node) -> Poly:
     """Return a product of powers, each known to be >= 0 on the domain of the claim."""
-    ring, floor = loop.ring, claim["domain"].text() == "above floor"
+    floor = claim["domain"].text() == "above floor"
     result = ring.constant(1)
     names = factors.keys()
     for name in names:
         power = factors[name].integer(-50, 50)
-        if name == "k_target" or (name == "R" and not floor and "R" in loop.states):
+        if name == "k_target" or (name == "R" and not floor and "R" in ring.index):
             base = ring.symbol(name)
         elif name == "s" and floor and power >= 0:
             base = ring.symbol("s")

@@ -1,0 +1,1 @@
+"""Lyapunov functions: identities, conditions on lambda, certified decay of a storage function."""

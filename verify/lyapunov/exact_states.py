@@ -1,0 +1,174 @@
+"""States with rational coordinates, and V' there exactly.
+
+Quaternions are taken on the rational points of the sphere: bv = s n with (b0, s) on the unit
+circle and n on the unit sphere, both from rational parameters, so that |bv| is rational too and
+laws that use it can be evaluated without rounding.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, final
+
+import casadi as ca
+
+from ...models.closed_loop import INERTIA_NAMES, ClosedLoop
+from ...models.laws import Expression
+from ...models.lowering import FIELD, Program, evaluate, walk
+from ..checker import inverse_matrix
+from .candidates import Candidate
+
+ExactRows = Sequence[Sequence[Fraction]]
+_UPPER = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
+
+
+class IrrationalError(ArithmeticError):
+    """A root of a number that is not the square of a rational."""
+
+
+def exact_root(value: Fraction) -> Fraction:
+    """Square root of the square of a rational."""
+    if value < 0:
+        raise IrrationalError("root of a negative number")
+    root = Fraction(math.isqrt(value.numerator), math.isqrt(value.denominator))
+    if root * root != value:
+        raise IrrationalError(f"the root of {value} is not rational")
+    return root
+
+
+EXACT: Mapping[str, Any] = {**FIELD, "sqrt": exact_root, "fabs": abs, "fmin": min, "fmax": max}
+"""Operations on rationals."""
+
+
+@final
+@dataclass(frozen=True)
+class ExactState:
+    """A state of a closed loop with rational coordinates.
+
+    Attributes
+    ----------
+    quaternion : (4,), unit norm exactly
+    rate : (3,), rad/s
+    controller : controller states by name
+    gain, gain_rate : g and g' (1/s)
+    floor : k* = 1/R_min where the storage function has it, 1/s
+    signals : the law's functions of time and their rates, in the order of `ClosedLoop.time`
+    """
+
+    quaternion: tuple[Fraction, ...]
+    rate: tuple[Fraction, ...]
+    controller: Mapping[str, Fraction]
+    gain: Fraction
+    gain_rate: Fraction
+    floor: Fraction = Fraction(1)
+    signals: tuple[Fraction, ...] = ()
+
+    def __post_init__(self) -> None:
+        if sum(x * x for x in self.quaternion) != 1:
+            raise ValueError("the quaternion must have unit norm exactly")
+
+    def floats(self) -> dict[str, float | list[float]]:
+        """Nearest floats, by name."""
+        values: dict[str, float | list[float]] = {
+            "quaternion": [float(x) for x in self.quaternion],
+            "rate": [float(x) for x in self.rate],
+        }
+        values |= {name: float(x) for name, x in self.controller.items()}
+        return values | {"g": float(self.gain), "g_rate": float(self.gain_rate)}
+
+    def exact(self) -> dict[str, Any]:
+        """Exact coordinates as text, by name."""
+        named = {"quaternion": self.quaternion, "rate": self.rate}
+        values: dict[str, Any] = {name: [str(x) for x in xs] for name, xs in named.items()}
+        values |= {name: str(x) for name, x in self.controller.items()}
+        return values | {"g": str(self.gain), "g_rate": str(self.gain_rate), "floor": str(self.floor)}
+
+
+def rational_quaternion(quaternion: Sequence[float], *, denominator: int = 10**6) -> tuple[Fraction, ...]:
+    """Rational unit quaternion near a given one, with rational |bv|.
+
+    The cosine and sine of half the error angle come from t = tan(Phi/8)... that is, from
+    ((1 - t^2)/(1 + t^2), 2 t/(1 + t^2)); the direction from stereographic projection.
+    """
+    b0, vector = quaternion[0], list(quaternion[1:])
+    length = math.sqrt(sum(x * x for x in vector))
+    if length == 0:
+        return (Fraction(1 if b0 >= 0 else -1), Fraction(0), Fraction(0), Fraction(0))
+    direction = rational_direction([x / length for x in vector], denominator=denominator)
+    tangent = math.tan(math.atan2(length, b0) / 2)
+    t = _near(tangent, denominator) if abs(tangent) < 1e8 else Fraction(10**8)
+    cosine, sine = (1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)
+    return (cosine, *(sine * x for x in direction))
+
+
+def _near(x: float, denominator: int) -> Fraction:
+    """Rational near x, as fine relative to x as the denominator allows for numbers near 1."""
+    scale = 10 ** max(0, -math.floor(math.log10(abs(x)))) if x else 1
+    return Fraction(x * scale).limit_denominator(denominator) / scale
+
+
+def rational_direction(vector: Sequence[float], *, denominator: int = 10**6) -> tuple[Fraction, ...]:
+    """Rational unit vector near a given unit vector (3,), by stereographic projection from its far pole."""
+    pole = max(range(3), key=lambda i: abs(vector[i]))
+    sign = 1 if vector[pole] >= 0 else -1
+    others = [i for i in range(3) if i != pole]
+    p = [_near(vector[i] / (1 + abs(vector[pole])), denominator) for i in others]
+    square = p[0] * p[0] + p[1] * p[1]
+    result = [Fraction(0)] * 3
+    result[pole] = sign * (1 - square) / (1 + square)
+    for i, x in zip(others, p, strict=True):
+        result[i] = 2 * x / (1 + square)
+    return tuple(result)
+
+
+@final
+class ExactDerivative:
+    """V', W and the claimed right side of a candidate at rational states."""
+
+    def __init__(self, candidate: Candidate, inertia: ExactRows, *, weight: Fraction = Fraction(1)) -> None:
+        loop = candidate.loop
+        self._loop, self._weight = loop, weight
+        rate = candidate.derivative
+        rate = loop.total_derivative(candidate.value) if rate is None else rate
+        right = ca.SX.nan() if candidate.right_side is None else candidate.right_side
+        self._has_right = candidate.right_side is not None
+        extra = [x if x is not None else ca.SX.sym("unused") for x in (candidate.floor, candidate.weight)]
+        self._program = program_of(
+            loop, extra, [rate, candidate.reference, right if self._has_right else rate]
+        )
+        inverse = inverse_matrix([list(row) for row in inertia])
+        self._body = [M[i][j] for M in (inertia, inverse) for i, j in _UPPER]
+
+    def at(self, state: ExactState) -> tuple[Fraction, Fraction, Fraction]:
+        """(V', W, claimed right side), exactly."""
+        arguments = [*loop_arguments(self._loop, state, self._body), [state.floor], [self._weight]]
+        rate, reference, right = evaluate(self._program, EXACT, arguments, Fraction)
+        return rate[0], reference[0], right[0]
+
+
+def program_of(loop: ClosedLoop, extra: Sequence[Expression], results: Sequence[Expression]) -> Program:
+    """Program of expressions of a loop: arguments (state, time, parameters, body, *extra)."""
+    return walk(ca.Function("exact", [*loop.arguments, *extra], list(results)))
+
+
+def loop_arguments(loop: ClosedLoop, state: ExactState, body: Sequence[Fraction]) -> list[list[Fraction]]:
+    """Arguments (state, time, parameters, body) of a loop's program at a rational state."""
+    names = [s.name for s in loop.law.controller_states]
+    controller = [state.controller[name] for name in names]
+    time = [state.gain, state.gain_rate, *state.signals]
+    if len(time) < loop.time.shape[0]:
+        time += [Fraction(0)] * (loop.time.shape[0] - len(time))
+    return [
+        [*state.quaternion, *state.rate, *controller],
+        time,
+        list(loop.law.parameters.values()),
+        list(body),
+    ]
+
+
+def entries(inertia: ExactRows) -> dict[str, Fraction]:
+    """Upper triangle of J by name."""
+    return {name: inertia[i][j] for name, (i, j) in zip(INERTIA_NAMES, _UPPER, strict=True)}

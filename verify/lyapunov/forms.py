@@ -1,0 +1,97 @@
+"""Laws and storage functions in the words of a certificate: names, instructions, where results stand."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import Any
+
+import casadi as ca
+
+from ...models.closed_loop import INERTIA_NAMES, PLANT_STATES, ClosedLoop
+from ...models.laws import Expression
+from ..certificates.program import write_lines
+from .candidates import Candidate
+
+FLOOR = "k_target"
+WEIGHT = "weight"
+
+
+def symbol_names(loop: ClosedLoop) -> dict[str, Expression]:
+    """Scalar symbols of a loop by the names certificates use (J^-1 has none: proofs do without)."""
+    symbols = {name: loop.state[i] for i, name in enumerate(PLANT_STATES)}
+    symbols |= dict(loop.controller_states)
+    symbols |= {"g": loop.time_symbols.g, "g_rate": loop.time_symbols.g_rate}
+    for name, signal in loop.time_symbols.signals.items():
+        symbols |= {name: signal, f"{name}_rate": loop.time_symbols.signal_rates[name]}
+    symbols |= dict(loop.parameter_symbols)
+    return symbols | {name: loop.body[i] for i, name in enumerate(INERTIA_NAMES)}
+
+
+def law_form(loop: ClosedLoop) -> dict[str, Any]:
+    """Law as certificate data: designated torque and controller rates as instructions.
+
+    Raises
+    ------
+    NotAlgebraicError
+        If the law uses more than + - * /.
+    """
+    control = loop.control
+    rates = [control.state_rates[name] for name in loop.controller_states]
+    lines = write_lines(symbol_names(loop), [ca.SX(control.torque), *(ca.SX(r) for r in rates)])
+    return {
+        "name": loop.law.name,
+        "parameters": list(loop.parameter_symbols),
+        "states": list(loop.controller_states),
+        "signals": list(loop.time_symbols.signals),
+        "program": list(lines.instructions),
+        "torque": list(lines.results[0]),
+        "rates": {n: r[0] for n, r in zip(loop.controller_states, lines.results[1:], strict=True)},
+    }
+
+
+def storage_form(candidate: Candidate, *, weight: Fraction | None = None) -> dict[str, Any]:
+    """Storage function as part of a claim; `weight` settles a free weight a.
+
+    Raises
+    ------
+    NotAlgebraicError
+        If an expression uses more than + - * /.
+    """
+    symbols = symbol_names(candidate.loop)
+    if candidate.floor is not None:
+        symbols[FLOOR] = candidate.floor
+    if candidate.weight is not None:
+        symbols[WEIGHT] = candidate.weight
+    right = candidate.reference if candidate.right_side is None else candidate.right_side
+    wanted = [candidate.value, candidate.reference, right, candidate.momentum_gradient]
+    lines = write_lines(symbols, wanted)
+    shift = write_lines({k: v for k, v in symbols.items() if k not in PLANT_STATES[4:]}, [candidate.shift])
+    form: dict[str, Any] = {
+        "shift_program": list(shift.instructions),
+        "shift": list(shift.results[0]),
+        "program": list(lines.instructions),
+        "value": lines.results[0][0],
+        "reference": lines.results[1][0],
+        "momentum_gradient": list(lines.results[3]),
+    }
+    if candidate.right_side is not None:
+        form["right_side"] = lines.results[2][0]
+    if candidate.weight is not None and weight is not None:
+        form["weight"] = weight
+    return form
+
+
+def inertia_data(
+    inertia: tuple[tuple[Fraction, ...], ...], tolerance: tuple[tuple[Fraction, ...], ...] | None
+) -> dict[str, Any]:
+    """Inertia, and its tolerance if any entry has one, as certificate data."""
+    data: dict[str, Any] = {"inertia": inertia}
+    if tolerance is not None and any(x > 0 for row in tolerance for x in row):
+        data["inertia_tolerance"] = tolerance
+    return data
+
+
+def parameter_data(loop: ClosedLoop) -> Mapping[str, Fraction]:
+    """Exact parameters of the law as certificate data."""
+    return loop.law.parameters

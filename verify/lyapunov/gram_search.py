@@ -1,0 +1,270 @@
+"""Gram matrices: found in floating point with Clarabel, rounded to rationals that fit exactly.
+
+Nothing here is a proof. A result solves the linear equations exactly and its matrices are
+positive definite in exact arithmetic; the stand-alone checker says so again from the file.
+"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..checker import Exponents, Matrix, Ring, is_positive_definite
+from .rounding import fit_exactly, rational_null_space
+from .sums_of_squares import Square, Target, Terms, square_terms
+
+Array = NDArray[np.float64]
+FACES = 4
+"""How often a search may restrict itself to a face of the cone."""
+FLAT = 1e-6
+"""Least eigenvalue, relative to the coefficients, below which a Gram matrix counts as singular."""
+
+
+@final
+@dataclass(frozen=True)
+class Gram:
+    """One term of a sum of squares with its exact Gram matrix over the monomials of `square.basis`."""
+
+    square: Square
+    matrix: Matrix
+
+
+@final
+@dataclass(frozen=True)
+class _Equations:
+    """A h = f: entries of all reduced Gram matrices (upper triangles) against coefficients."""
+
+    rows: tuple[Exponents, ...]
+    columns: tuple[tuple[int, int, int], ...]
+    matrix: list[dict[int, Fraction]]
+
+
+@final
+@dataclass(frozen=True)
+class Face:
+    """Where a search ended: the face of the cone, its equations, and a point inside it.
+
+    The point fits neighbouring problems too (another inertia of a box), which then need no search.
+    """
+
+    squares: tuple[Square, ...]
+    bases: tuple[Matrix, ...]
+    equations: _Equations
+    guess: tuple[float, ...]
+    level: float
+
+
+@final
+@dataclass(frozen=True)
+class RateSearch:
+    """A solver's largest rate and the multipliers that bound it; floating point, evidence of nothing."""
+
+    rate: float
+    multipliers: tuple[dict[Exponents, float], ...]
+
+    def bound(self, targets: list[Target]) -> float:
+        """Upper bound on the rate of a neighbouring problem, by the same multipliers."""
+        pairs = list(zip(self.multipliers, targets, strict=True))
+        fixed = sum(y.get(key, 0.0) * float(v) for y, t in pairs for key, v in t.fixed.items())
+        reference = sum(y.get(key, 0.0) * float(v) for y, t in pairs for key, v in t.reference.items())
+        return fixed / reference if reference else np.inf
+
+
+def largest_rate(ring: Ring, targets: list[Target]) -> RateSearch | None:
+    """Largest rate for which every target looks like a sum of squares; None if there is none."""
+    import cvxpy as cp
+
+    rate = cp.Variable()
+    constraints: list[Any] = [rate <= 1e6]
+    balances, rows = [], []
+    for target in targets:
+        bases = [_identity(len(square.basis)) for square in target.squares]
+        equations = _equations(ring, target.squares, bases)
+        expression, grams = _gram_expression(equations, bases)
+        fixed, reference = _vector(equations, target.fixed), _vector(equations, target.reference)
+        if fixed is None or reference is None:
+            return None
+        balances.append(expression == fixed - rate * reference)
+        rows.append(equations.rows)
+        constraints += [G >> 0 for G in grams]
+    problem = cp.Problem(cp.Maximize(rate), constraints + balances)
+    if not _solve(problem) or rate.value is None:
+        return None
+    duals = [np.asarray(balance.dual_value, dtype=float).ravel() for balance in balances]
+    multipliers = tuple(dict(zip(keys, y.tolist(), strict=True)) for keys, y in zip(rows, duals, strict=True))
+    return RateSearch(float(rate.value), multipliers)
+
+
+def find_gram(
+    ring: Ring, target: Target, rate: Fraction, known: Face | None
+) -> tuple[list[Gram], Face] | None:
+    """Exact Gram matrices for fixed - rate * reference, or None if the search finds none.
+
+    `known` is the face of a neighbouring problem, tried before a search of one's own.
+    """
+    goal = dict(target.fixed)
+    for key, value in target.reference.items():
+        goal[key] = goal.get(key, Fraction(0)) - rate * value
+    goal = {key: value for key, value in goal.items() if value}
+    known = known if known is not None and known.squares == target.squares else None
+    if known is not None:
+        grams = _exact(known, goal)
+        if grams is not None:
+            return grams, known
+    face = _search(ring, target, goal, None if known is None else known.bases)
+    grams = None if face is None else _exact(face, goal)
+    return None if grams is None or face is None else (grams, face)
+
+
+def _search(ring: Ring, target: Target, goal: Terms, start: tuple[Matrix, ...] | None) -> Face | None:
+    """Go down the faces of the cone, from the whole of it or from a neighbour's, to an interior point."""
+    bases = [_identity(len(square.basis)) for square in target.squares] if start is None else list(start)
+    for _ in range(FACES):
+        equations = _equations(ring, target.squares, bases)
+        f = _vector(equations, goal)
+        solved = None if f is None else _interior(equations, bases, f)
+        if f is None or solved is None:
+            return None
+        level, grams = solved
+        scale = max(1.0, float(np.max(np.abs(f), initial=0.0)))
+        if level > FLAT * scale:
+            return Face(target.squares, tuple(bases), equations, tuple(_upper(grams)), level)
+        reduced = [rational_null_space(G, B, FLAT * 100 * scale) for G, B in zip(grams, bases, strict=True)]
+        if all(len(new) == len(old) for new, old in zip(reduced, bases, strict=True)) or not any(reduced):
+            return None
+        bases = reduced
+    return None
+
+
+def _exact(face: Face, goal: Terms) -> list[Gram] | None:
+    """Gram matrices on a face that fit the goal exactly; None if they do not exist or are not definite."""
+    rows = face.equations.rows
+    if not set(goal) <= set(rows):
+        return None
+    right = [goal.get(key, Fraction(0)) for key in rows]
+    entries = fit_exactly(face.equations.matrix, right, list(face.guess), face.level)
+    return None if entries is None else _assemble(face, entries)
+
+
+def _identity(n: int) -> Matrix:
+    return [[Fraction(int(i == j)) for j in range(n)] for i in range(n)]
+
+
+def _equations(ring: Ring, squares: tuple[Square, ...], bases: list[Matrix]) -> _Equations:
+    """Linear equations between reduced Gram entries H (G = B'HB) and coefficients."""
+    columns: list[tuple[int, int, int]] = []
+    effects: list[Terms] = []
+    for which, (square, B) in enumerate(zip(squares, bases, strict=True)):
+        products = {
+            (i, j): square_terms(ring, square.factor, square.basis[i], square.basis[j])
+            for i in range(len(square.basis))
+            for j in range(i + 1)
+        }
+        sparse = [[(i, x) for i, x in enumerate(row) if x] for row in B]
+        for p in range(len(B)):
+            for q in range(p, len(B)):
+                effect: Terms = {}
+                for i, x in sparse[p]:
+                    for j, y in sparse[q]:
+                        weight = x * y * (1 if p == q else 2)
+                        for key, value in products[max(i, j), min(i, j)].items():
+                            effect[key] = effect.get(key, Fraction(0)) + weight * value
+                columns.append((which, p, q))
+                effects.append(effect)
+    rows = sorted({key for effect in effects for key in effect})
+    position = {key: n for n, key in enumerate(rows)}
+    matrix: list[dict[int, Fraction]] = [{} for _ in rows]
+    for n, effect in enumerate(effects):
+        for key, value in effect.items():
+            if value:
+                matrix[position[key]][n] = value
+    return _Equations(tuple(rows), tuple(columns), matrix)
+
+
+def _vector(equations: _Equations, terms: Terms) -> Array | None:
+    """Coefficients in the order of the rows; None if some monomial is out of reach."""
+    if not set(terms) <= set(equations.rows):
+        return None
+    return np.array([float(terms.get(key, 0)) for key in equations.rows])
+
+
+def _gram_expression(equations: _Equations, bases: list[Matrix]) -> tuple[Any, list[Any]]:
+    """Left side of the equations as a cvxpy expression, and the Gram matrices in it."""
+    import cvxpy as cp
+    import scipy.sparse as sp
+
+    grams = [cp.Variable((len(B), len(B)), symmetric=True) for B in bases if B]
+    numbers = [i for i, B in enumerate(bases) if B]
+    expression: Any = 0
+    for G, which in zip(grams, numbers, strict=True):
+        n = len(bases[which])
+        entries, rows, places = [], [], []
+        for r, row in enumerate(equations.matrix):
+            for column, value in row.items():
+                w, p, q = equations.columns[column]
+                if w == which:
+                    entries.append(float(value))
+                    rows.append(r)
+                    places.append(q * n + p)
+        A = sp.csr_array((entries, (rows, places)), shape=(len(equations.rows), n * n))
+        expression = expression + A @ cp.vec(G, order="F")
+    return expression, grams
+
+
+def _interior(equations: _Equations, bases: list[Matrix], f: Array) -> tuple[float, list[Array]] | None:
+    """Gram matrices with the largest least eigenvalue, and that eigenvalue."""
+    import cvxpy as cp
+
+    level = cp.Variable()
+    expression, grams = _gram_expression(equations, bases)
+    constraints = [expression == f, level <= 1e3]
+    constraints += [G - level * np.eye(G.shape[0]) >> 0 for G in grams]
+    if not _solve(cp.Problem(cp.Maximize(level), constraints)) or level.value is None:
+        return None
+    values = iter([np.asarray(G.value, dtype=float) for G in grams])
+    return float(level.value), [next(values) if B else np.zeros((0, 0)) for B in bases]
+
+
+def _solve(problem: Any) -> bool:
+    """Run Clarabel; whether it returned something to look at (never evidence of anything)."""
+    import cvxpy as cp
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # "may be inaccurate": nothing rests on its accuracy
+        try:
+            problem.solve(solver=cp.CLARABEL)
+        except cp.SolverError:
+            return False
+    return problem.status in (cp.OPTIMAL, cp.OPTIMAL_INACCURATE)
+
+
+def _upper(grams: list[Array]) -> list[float]:
+    return [float(G[p, q]) for G in grams for p in range(len(G)) for q in range(p, len(G))]
+
+
+def _assemble(face: Face, entries: list[Fraction]) -> list[Gram] | None:
+    """Gram matrices over the monomials from exact entries; None if one is not positive definite."""
+    reduced = [[[Fraction(0)] * len(B) for _ in B] for B in face.bases]
+    for (which, p, q), value in zip(face.equations.columns, entries, strict=True):
+        reduced[which][p][q] = value
+        reduced[which][q][p] = value
+    result = []
+    for square, B, H in zip(face.squares, face.bases, reduced, strict=True):
+        if not B:
+            continue
+        if not is_positive_definite(H):
+            return None
+        result.append(Gram(square, _congruent(H, B)))
+    return result
+
+
+def _congruent(H: Matrix, B: Matrix) -> Matrix:
+    """Return B'HB."""
+    size, n = range(len(B)), range(len(B[0]))
+    HB = [[sum((H[p][q] * B[q][j] for q in size if B[q][j]), Fraction(0)) for j in n] for p in size]
+    return [[sum((B[p][i] * HB[p][j] for p in size if B[p][i]), Fraction(0)) for j in n] for i in n]
