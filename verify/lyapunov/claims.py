@@ -1,0 +1,84 @@
+"""All claims about the Lyapunov function of one law on one body."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from fractions import Fraction
+
+from ...models.closed_loop import close_loop
+from ...models.laws import Law
+from ...models.rigid_body import RigidBody
+from ..certificates.format import Certificate
+from ..verdict import Claim, Verdict
+from .candidates import NoStorageError, candidate
+from .conditions import ExactRows, paper_condition, sharp_condition
+from .decay import derivative_claim, rate_claim
+from .exact_states import ExactState
+from .identity import identity_claim
+
+
+def lyapunov_claims(
+    law: Law,
+    body: RigidBody,
+    *,
+    tolerance: ExactRows | None = None,
+    gain_bound: Fraction | None = None,
+    suspects: Sequence[ExactState] = (),
+) -> tuple[Claim, ...]:
+    """Claims lyapunov.identity, lyapunov.derivative, lambda.paper, lambda.sharp, lambda.rate that apply.
+
+    Parameters
+    ----------
+    law, body : the closed loop
+    tolerance : (3, 3) exact or None
+        Largest deviation of each entry of the inertia, kg m^2; claims then hold for the whole box.
+    gain_bound : Fraction or None
+        Restrict the claim on V' to 0 <= g <= gain_bound (laws of one's own may need it).
+    suspects : states to try against V' <= 0 where no certificate is found
+
+    Notes
+    -----
+    A law without a storage function gets one UNDECIDED claim that says so. Certificates are in the
+    claims' evidence; `certificates_of` collects them.
+    """
+    try:
+        chosen = candidate(close_loop(law))
+    except NoStorageError as error:
+        return (_no_storage(str(error)),)
+    claims: list[Claim] = []
+    identity = identity_claim(chosen, body.exact_inertia)
+    claims += [identity] if identity is not None else []
+    claims.append(
+        derivative_claim(chosen, body, tolerance=tolerance, gain_bound=gain_bound, suspects=suspects)
+    )
+    if chosen.right_side is not None and "lambda" in law.parameters:
+        lam = law.parameters["lambda"]
+        claims.append(paper_condition(lam, body, tolerance=tolerance))
+        claims.append(
+            sharp_condition(lam, body, weight=law.parameters.get("a", Fraction(1)), tolerance=tolerance)
+        )
+        claims.append(rate_claim(chosen, body, tolerance=tolerance))
+    return tuple(claims)
+
+
+def certificates_of(claims: Iterable[Claim]) -> tuple[Certificate, ...]:
+    """Certificates under the claims, in order, each once."""
+    found: list[Certificate] = []
+    for claim in claims:
+        for evidence in claim.evidence:
+            certificate = evidence.details.get("certificate")
+            if isinstance(certificate, Certificate) and all(certificate is not known for known in found):
+                found.append(certificate)
+    return tuple(found)
+
+
+def _no_storage(reason: str) -> Claim:
+    return Claim(
+        key="lyapunov.derivative",
+        title="Sign of V'",
+        statement="V' <= 0 at every attitude and rate",
+        verdict=Verdict.UNDECIDED,
+        reason=reason,
+        next_step="return a storage function from Law.storage",
+        counted=False,
+    )

@@ -1,0 +1,206 @@
+"""Claims that V' <= 0 (lyapunov.derivative) and that V_a decays at a certified rate (lambda.rate)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from ...models.rigid_body import RigidBody
+from ..certificates.format import Certificate
+from ..rational_quantity import rational_quantity
+from ..verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict, Witness
+from .candidates import Candidate
+from .conditions import ExactRows, sharp_condition, vertices
+from .derivative import DecayCertificate, NoCertificateError, certify_decay
+from .exact_states import ExactState
+from .identity import identity_certificate
+from .refutation import refute_sign
+
+SOURCE = "docs/proofs.md: sums of squares on the sphere; Ram & Akella, AAS 21-402"
+NEXT_STEP = "raise lambda, or give the law a storage function of its own (Law.storage)"
+
+
+def derivative_claim(
+    candidate: Candidate,
+    body: RigidBody,
+    *,
+    tolerance: ExactRows | None = None,
+    gain_bound: Fraction | None = None,
+    suspects: Sequence[ExactState] = (),
+) -> Claim:
+    """Claim V' <= 0 on the whole domain (key lyapunov.derivative), the paper's V or the law's own.
+
+    Parameters
+    ----------
+    suspects : states to try first if no certificate is found
+    """
+    statement = f"V' <= 0 at every attitude and rate{_where(candidate)}"
+    weight = Fraction(1)
+    try:
+        proof = _certify(candidate, body, tolerance, weight, gain_bound)
+    except NoCertificateError as error:
+        reason = str(error)
+    else:
+        return _proved(
+            "lyapunov.derivative", f"V' <= -rho W <= 0 with rho = {float(proof.rate):.9g} 1/s", proof
+        )
+    witness = _refute(candidate, body, tolerance, weight, suspects)
+    if witness is not None:
+        return _claim("lyapunov.derivative", statement, Verdict.REFUTED, witness=witness)
+    theorem = _by_sharp_condition(candidate, body, tolerance)
+    if theorem:
+        return _claim("lyapunov.derivative", statement, Verdict.PROVED, evidence=theorem)
+    return _claim("lyapunov.derivative", statement, Verdict.UNDECIDED, reason=reason)
+
+
+def rate_claim(
+    candidate: Candidate,
+    body: RigidBody,
+    *,
+    tolerance: ExactRows | None = None,
+    weight: Fraction | None = None,
+) -> Claim:
+    """Claim a positive certified rate: V_a' <= -rho V_a, or -rho W (key lambda.rate).
+
+    The weight a is the law's own where it has one; otherwise, unless given, the one that maximises
+    the dissipation rho in V_a' <= -rho V_1.
+    """
+    if candidate.weight is not None and weight is None:
+        weight = best_weight(candidate.loop.law.parameters["lambda"], body, tolerance)
+    named = "" if weight is None else f" with a = {float(weight):.6g} kg m^2/s^2"
+    statement = f"V{named} decays at a positive rate{_where(candidate)}"
+    try:
+        proof = _certify(candidate, body, tolerance, weight, None)
+    except NoCertificateError as error:
+        witness = _refute(candidate, body, tolerance, weight or Fraction(1), ())
+        if witness is not None:
+            return _claim("lambda.rate", statement, Verdict.REFUTED, witness=witness)
+        return _claim("lambda.rate", statement, Verdict.UNDECIDED, reason=str(error))
+    if proof.rate == 0:
+        reason = "only V' <= 0 was certified: the best rate is zero or too small to round"
+        return _claim("lambda.rate", statement, Verdict.UNDECIDED, reason=reason)
+    sized = f"V{named}: V' <= -rho W with rho = {float(proof.rate):.9g} 1/s{_where(candidate)}"
+    extra = () if weight is None else (rational_quantity("weight", weight, unit="kg m^2/s^2"),)
+    return _proved("lambda.rate", sized, proof, extra)
+
+
+def best_weight(lam: Fraction, body: RigidBody, tolerance: ExactRows | None = None) -> Fraction:
+    """Weight a that maximises rho in V_a' <= -rho V_1, to four digits (a choice, not a proof).
+
+    [[(lambda - rho) J, -(a/2) I], [-(a/2) I, (a lambda - rho) I]] >= 0 at every vertex of the box.
+    """
+    import cvxpy as cp
+
+    a, rho, rate = cp.Variable(), cp.Variable(), float(lam)
+    constraints: list[Any] = [a >= 0]
+    for J in vertices(body.exact_inertia, tolerance):
+        inertia, unit = np.array([[float(x) for x in row] for row in J]), np.eye(3)
+        blocks = [[(rate - rho) * inertia, -a / 2 * unit], [-a / 2 * unit, (rate * a - rho) * unit]]
+        constraints.append(cp.bmat(blocks) >> 0)
+    problem = cp.Problem(cp.Maximize(rho), constraints)
+    try:
+        problem.solve(solver=cp.CLARABEL)
+        value = float(a.value)
+    except (cp.SolverError, TypeError):
+        value = rate**2 * float(body.principal_inertias[0])
+    return Fraction(f"{max(value, 1e-12):.4g}")
+
+
+def _certify(
+    candidate: Candidate,
+    body: RigidBody,
+    tolerance: ExactRows | None,
+    weight: Fraction | None,
+    gain_bound: Fraction | None,
+) -> DecayCertificate:
+    rows = None if tolerance is None else tuple(tuple(row) for row in tolerance)
+    return certify_decay(candidate, body.exact_inertia, tolerance=rows, weight=weight, gain_bound=gain_bound)
+
+
+def _refute(
+    candidate: Candidate,
+    body: RigidBody,
+    tolerance: ExactRows | None,
+    weight: Fraction,
+    suspects: Sequence[ExactState],
+) -> Witness | None:
+    for J in vertices(body.exact_inertia, tolerance):
+        witness = refute_sign(candidate, J, weight, suspects)
+        if witness is not None:
+            return witness
+    return None
+
+
+def _by_sharp_condition(
+    candidate: Candidate, body: RigidBody, tolerance: ExactRows | None
+) -> tuple[Evidence, ...]:
+    """Evidence for V' <= 0 from the identity and the sharp condition; empty if one of them is missing."""
+    parameters = candidate.loop.law.parameters
+    if candidate.right_side is None or "lambda" not in parameters:
+        return ()
+    weight = parameters.get("a", Fraction(1))
+    condition = sharp_condition(parameters["lambda"], body, weight=weight, tolerance=tolerance)
+    try:
+        certificate, _ = identity_certificate(candidate)
+    except ValueError:
+        return ()
+    if condition.verdict is not Verdict.PROVED:
+        return ()
+    summary = "V' = R Q + g^2 (1 - k* R) P as polynomials, P >= 0, and Q <= 0 by the sharp condition"
+    theorem = Evidence(EvidenceKind.THEOREM, summary, SOURCE, {"certificate": certificate})
+    return (theorem, *condition.evidence)
+
+
+def _where(candidate: Candidate) -> str:
+    if candidate.floor is not None:
+        return ", wherever R >= R_min, for every R_min > 0 with k* = 1/R_min"
+    return ", R > 0" if "R" in candidate.loop.controller_states else ""
+
+
+def _proved(key: str, statement: str, proof: DecayCertificate, extra: tuple[Quantity, ...] = ()) -> Claim:
+    details: dict[str, Certificate | list[str]] = {
+        "certificate": proof.certificate,
+        "claim": list(proof.statement),
+    }
+    evidence = Evidence(
+        EvidenceKind.CERTIFICATE,
+        "-V' - rho W is a sum of squares on the sphere, in rationals, accepted by the stand-alone checker",
+        SOURCE,
+        details,
+    )
+    quantities = (rational_quantity("certified_rate", proof.rate, unit="1/s"), *extra)
+    return _claim(key, statement, Verdict.PROVED, evidence=(evidence,), quantities=quantities)
+
+
+def _claim(
+    key: str,
+    statement: str,
+    verdict: Verdict,
+    *,
+    evidence: tuple[Evidence, ...] = (),
+    witness: Witness | None = None,
+    quantities: tuple[Quantity, ...] = (),
+    reason: str = "",
+) -> Claim:
+    titles = {
+        "lyapunov.derivative": "Sign of V'",
+        "lambda.rate": "Certified decay rate of the weighted family",
+    }
+    if witness is not None:
+        evidence = (Evidence(EvidenceKind.WITNESS, "evaluated exactly in rationals", SOURCE),)
+    return Claim(
+        key=key,
+        title=titles[key],
+        statement=statement,
+        verdict=verdict,
+        evidence=evidence,
+        quantities=quantities,
+        witness=witness,
+        reason=reason,
+        next_step=NEXT_STEP if verdict is Verdict.UNDECIDED else "",
+        source=SOURCE,
+        counted=False,
+    )
