@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import final
 
 from ..models.schedule import Hermite, Ramps, Schedule, Shape, Window, build_schedule
+from . import thrust
 from .csv_tables import read_rows
 from .document import Document
 from .errors import ScenarioError
 from .schema import ScheduleTable
-from .thrust import measured_schedule
 
 LARGEST_COUNT = 1_000_000
 """Windows that `count` may ask for."""
@@ -67,7 +67,7 @@ def build(table: ScheduleTable, document: Document) -> ScheduleChoice:
         )
     _refuse_stray_keys(table, given[0], document)
     if table.thrust is not None:
-        schedule = measured_schedule(table, document)
+        schedule = thrust.build(table, table.thrust, document)
         return ScheduleChoice(schedule, "measured", f"thrust samples {Path(table.thrust.csv).name}")
     windows, locate, source = _windows(table, document)
     period = table.period if table.count is None else None

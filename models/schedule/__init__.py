@@ -1,9 +1,11 @@
 """Thruster schedules as exact piecewise polynomials of time."""
 
 from .clock import Clock
+from .measured import ThrustSample, measured_schedule
 from .piecewise import Piece, PiecewisePolynomial
 from .profiles import Hermite, Ramps, Shape, build_schedule
 from .schedule import Schedule, Window
+from .variants import missing_in_a_row, shifted_edges, unrolled, without_windows
 
 __all__ = [
     "Clock",
@@ -13,6 +15,12 @@ __all__ = [
     "Ramps",
     "Schedule",
     "Shape",
+    "ThrustSample",
     "Window",
     "build_schedule",
+    "measured_schedule",
+    "missing_in_a_row",
+    "shifted_edges",
+    "unrolled",
+    "without_windows",
 ]

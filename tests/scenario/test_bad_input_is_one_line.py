@@ -264,3 +264,55 @@ def test_scenario_file_that_is_no_scenario(tmp_path):
     empty = tmp_path / "empty.toml"
     empty.write_text("")
     assert complaint(empty) == "empty.toml: spacecraft: required, but missing (and 1 more such line)"
+
+
+AT_REST = ": g must be C1 with no thrust before and after the record"
+BAD_THRUST = {
+    "times not increasing": (
+        "0,0\n1,1\n1,0\n",
+        "",
+        ": t.csv line 3: time 1 s does not come after 1 s in the row above it",
+    ),
+    "negative time": ("-1,0\n1,1\n2,0\n", "", ": t.csv line 1: time -1 s: times start at 0 s"),
+    "beyond the period": (
+        "0,0\n1,1\n9,0\n",
+        "period = 8\n",
+        ": t.csv line 3: time 9 s comes after the period ends (8 s)",
+    ),
+    "header only": (
+        "time,thrust\n",
+        "",
+        ": t.csv: has a header and no rows: expected rows 'time,thrust'",
+    ),
+    "wrong header": (
+        "on,off\n0,0\n",
+        "",
+        ": t.csv line 1: expected the header 'time,thrust', received 'on,off'",
+    ),
+    "no thrust": ("0,0\n1,0\n2,0\n", "", ": t.csv: no sample shows any thrust"),
+    "two samples": ("0,0\n1,1\n", "", ": t.csv: expected at least three thrust samples, received 2"),
+    "thrust at the start": (
+        "0,1\n1,1\n2,0\n",
+        "",
+        ": t.csv: the first sample (0 s) must be zero, received g = 1" + AT_REST,
+    ),
+    "thrust at the end": (
+        "0,0\n1,1\n2,0.5\n",
+        "",
+        ": t.csv: the last sample (2 s) must be zero, received g = 0.5" + AT_REST,
+    ),
+}
+
+
+@pytest.mark.parametrize(("text", "extra", "message"), BAD_THRUST.values(), ids=BAD_THRUST)
+def test_bad_thrust_samples(workshop, text, extra, message):
+    (workshop.folder / "t.csv").write_text(text)
+    schedule = extra + 'thrust = { csv = "t.csv", zero_below = 0.02 }'
+    assert workshop.complaint(schedule=schedule) == f"scenario.toml: schedule.thrust.csv{message}"
+
+
+def test_thrust_needs_its_threshold(workshop):
+    complaint = workshop.complaint(schedule='thrust = { csv = "t.csv" }')
+    assert complaint == "scenario.toml: schedule.thrust.zero_below: required, but missing"
+    complaint = workshop.complaint(schedule='thrust = { csv = "t.csv", zero_below = 0 }\nshape = "hermite"')
+    assert complaint == "scenario.toml: schedule.shape: thrust samples have their own shape: remove it"
