@@ -16,6 +16,7 @@ from .options import Debug, InputError, debugging
 COMMANDS = (
     "init",
     "check",
+    "explain",
 )
 """Modules of this room that are commands, in the order of the help page; `_` is spelled `-`."""
 

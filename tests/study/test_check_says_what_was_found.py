@@ -144,3 +144,18 @@ def test_wrong_words_are_bad_input(intermit: Run, arguments: list[str]) -> None:
     code, _, err = intermit(*arguments)
     assert code == 2
     assert err.count("\n") == 1
+
+
+def test_explain_lists_states_and_puts_numbers_in(intermit: Run, write_scenario: Write) -> None:
+    code, keys, _ = intermit("explain")
+    assert code == 0
+    assert "lyapunov.derivative" in keys
+    code, general, _ = intermit("explain", "lyapunov.derivative")
+    assert code == 0
+    assert "Ram & Akella" in general
+    scenario = write_scenario(base="paper-smaller-lambda.toml")
+    code, found, _ = intermit("explain", "lyapunov.derivative", scenario)
+    assert code == 0
+    assert "REFUTED" in found
+    assert found.startswith(general)
+    assert intermit("explain", "lyapunov.nothing")[0] == 2
