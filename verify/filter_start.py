@@ -40,7 +40,9 @@ def filter_start_claim(schedule: Schedule, *, decay: Fraction, initial: Fraction
     low, high = (2 * g**2 / decay for g in greatest_gain(schedule))
     statement = f"0 < R(0) = {float(initial):g} s <= 2 max g^2 / lambda = {float(low):.6g} s"
     evidence = Evidence(
-        EvidenceKind.THEOREM, "R' <= -lambda R + 2 g^2; the greatest g by Bernstein coefficients", source=SOURCE
+        EvidenceKind.THEOREM,
+        "R' <= -lambda R + 2 g^2; the greatest g by Bernstein coefficients",
+        source=SOURCE,
     )
     ceiling = rational_quantity("filter_ceiling", max(low, initial), max(high, initial), "s", "R stays below")
     if initial <= low:

@@ -1,0 +1,56 @@
+"""What the README tells a newcomer to type works, and its tables name what is there."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+from intermit.cli.app import COMMANDS, run
+
+
+def text(checkout: Path) -> str:
+    return (checkout / "README.md").read_text(encoding="utf-8")
+
+
+def blocks(readme: str, language: str) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```", readme, flags=re.DOTALL | re.MULTILINE)
+
+
+def test_python_block_runs(checkout: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for block in blocks(text(checkout), "python"):
+        exec(compile(block, "README.md", "exec"), {})  # noqa: S102
+    # settled before the horizon: a number, not None
+    assert 0 < float(capsys.readouterr().out) < 56
+
+
+@pytest.mark.slow
+def test_console_commands_run(checkout: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (console,) = blocks(text(checkout), "console")
+    commands = [line.split()[1:] for line in console.splitlines() if line.startswith("venv/bin/intermit")]
+    assert len(commands) >= 2
+    for command in commands:
+        assert run(command) == 0, command
+
+
+def test_command_table_names_real_commands(checkout: Path) -> None:
+    named = set(re.findall(r"^\| `intermit ([a-z-]+)", text(checkout), flags=re.MULTILINE))
+    assert named <= {name.replace("_", "-") for name in COMMANDS}
+
+
+def test_dependency_table_is_complete(checkout: Path) -> None:
+    project = tomllib.loads((checkout / "pyproject.toml").read_text())["project"]
+    needed = {re.split(r"[<>=\[ ]", item)[0] for item in project["dependencies"]}
+    table = text(checkout).split("## Dependencies")[1].split("## ")[0]
+    rows = re.findall(r"^\| ([a-z0-9, -]+) \|", table, flags=re.MULTILINE)
+    named = {name.strip() for row in rows for name in row.split(",")} - {"package"}
+    assert named == needed
+
+
+def test_every_make_verb_named_is_in_the_makefile(checkout: Path) -> None:
+    makefile = (checkout / "Makefile").read_text()
+    for page in ("README.md", "CONTRIBUTING.md"):
+        for verb in re.findall(r"^ {4}make ([a-z]+)", (checkout / page).read_text(), flags=re.MULTILINE):
+            assert re.search(rf"^{verb}:", makefile, flags=re.MULTILINE), (page, verb)
