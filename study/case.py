@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import final
 
 from ..models.laws import Law
 from ..scenario import LawChoice, Scenario
 from ..verify.derivative import SampledDerivative, with_samples
+from ..verify.filter_start import filter_start_claim
 from ..verify.verdict import Claim, Verdict
 from .keys import CLAIM_KEYS, order_of
 from .run import Run, run_law
@@ -41,14 +42,14 @@ class Case:
 def check_case(scenario: Scenario, choice: LawChoice, *, simulate: bool, progress: Progress) -> Case:
     """Decide every claim about one law, and run it."""
     law = choice.build()
-    claims: dict[str, Claim] = {}
+    claims = {claim.key: claim for claim in _filter_claims(scenario, law)}
     notes: list[str] = []
     run = None
     if simulate:
         progress("simulation", 0.0)
         run = run_law(scenario, law)
     progress("samples of V'", 0.5)
-    floor = reference_floor(scenario, law, claims.get("filter.floor"))
+    floor = reference_floor(scenario, law, claims.get("filter.floor"), run)
     samples, why_not = sample_law(
         scenario, law, floor, lambda done: progress("samples of V'", 0.5 + 0.5 * done)
     )
@@ -58,6 +59,14 @@ def check_case(scenario: Scenario, choice: LawChoice, *, simulate: bool, progres
         _add_samples(claims, samples)
     ordered = tuple(sorted(claims.values(), key=lambda claim: order_of(claim.key)))
     return Case(choice, law, ordered, samples, run, tuple(notes))
+
+
+def _filter_claims(scenario: Scenario, law: Law) -> Iterator[Claim]:
+    """Claims about the filter state, for a law that has one."""
+    initial = {state.name: state.initial for state in law.controller_states}
+    decay = law.parameters.get("lambda")
+    if "R" in initial and decay is not None:
+        yield filter_start_claim(scenario.schedule, decay=decay, initial=initial["R"])
 
 
 def _add_samples(claims: dict[str, Claim], samples: SampledDerivative) -> None:

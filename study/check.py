@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import final
 
 from ..scenario import Scenario
+from ..verify.excitation import excitation_claim
 from ..verify.schedule_facts import schedule_claims
 from ..verify.verdict import Claim
 from .case import Case, check_case
@@ -88,7 +89,8 @@ def run_check(
 def scenario_claims(scenario: Scenario) -> tuple[Claim, ...]:
     """Claims about the schedule alone."""
     choice = scenario.schedule_choice
-    return schedule_claims(choice.schedule, overruns_as_printed=choice.overruns_as_printed)
+    facts = schedule_claims(choice.schedule, overruns_as_printed=choice.overruns_as_printed)
+    return (*facts, excitation_claim(choice.schedule, scenario.check.pe_window))
 
 
 @final

@@ -91,7 +91,7 @@ CLAIM_KEYS: dict[str, ClaimKey] = {
             PAPER,
             _SCHEDULE,
             by_law=False,
-            counts=False,
+            counts=True,
         ),
         ClaimKey(
             "filter.start",

@@ -19,8 +19,12 @@ from ..verify.derivative import (
     interpret,
     sample_derivative,
 )
+from ..verify.floor.converged import ConvergedFilter
 from ..verify.verdict import Claim, Verdict
+from .run import Run
 
+CERTIFIED_FLOOR = "certified_floor"
+"""Name of the quantity of the claim "filter.floor" that is a certified floor of R."""
 GRID = 65
 """Points of a piece at which g' is looked at: the domain's size is stated, not proved."""
 
@@ -52,14 +56,23 @@ def sample_law(
     return interpret(function, scenario.body, samples, weight=weight, gain_target=target), ""
 
 
-def reference_floor(scenario: Scenario, law: Law, claim: Claim | None) -> Fraction | None:
-    """R_min for the storage function: the certified one where there is one, else the converged one, s."""
-    del scenario, law
+def reference_floor(scenario: Scenario, law: Law, claim: Claim | None, run: Run | None) -> Fraction | None:
+    """R_min for V's k* = 1/R_min and for the sampled domain, s.
+
+    The certified floor where there is one; else the converged one (periodic schedules), which bounds
+    inf R from above; else the least R of the run. Any value > 0 makes a V to be examined.
+    """
     if claim is not None and claim.verdict is Verdict.PROVED:
         for quantity in claim.quantities:
-            if quantity.name == "certified_floor":
+            if quantity.name == CERTIFIED_FLOOR and quantity.low > 0:
                 return Fraction(quantity.low)
-    return Fraction(149646, 1000000)
+    decay = law.parameters.get("lambda")
+    if decay is not None and scenario.schedule.is_periodic:
+        low = ConvergedFilter(scenario.schedule, decay).floor().low
+        return Fraction(low) if low > 0 else None
+    if run is not None and run.filter_floor is not None and run.filter_floor.value > 0:
+        return Fraction(run.filter_floor.value)
+    return None
 
 
 def sampled_domain(scenario: Scenario, law: Law, floor: Fraction | None) -> SampledDomain:
