@@ -137,6 +137,10 @@ class Propagator:
             np.ascontiguousarray(B.full().reshape(7, n, 3).transpose(1, 0, 2)),
         )
 
+    def map_with_body(self, function: Any, *columns: Array) -> Array:
+        """Value of a function (columns..., length, profile, J, J^-1) on every cell, side by side."""
+        return np.asarray(function.map(self.mesh.size)(*columns, *self._shared).full())
+
     def step_errors(self, states: Array, torque: Array) -> Array:
         """Largest difference, cell by cell, between one step and two half steps, (n,)."""
         first, second = (Propagator(self.scaled, half) for half in self.mesh.halves())

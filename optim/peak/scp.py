@@ -14,11 +14,16 @@ from typing import final
 import numpy as np
 from numpy.typing import NDArray
 
+from .curvature import Curvature, lagrangian_curvature
 from .optimality import dual_value
 from .shooting import Flight, Sensitivity, Shooting
-from .subproblem import ConeProgram, Linearisation
+from .subproblem import ConeProgram, ConvexStep, Linearisation
 
 Array = NDArray[np.float64]
+SLOW = 8
+"""Accepted steps after which second derivatives are worth their cost."""
+SLOW_SLACK = 100.0
+"""Factor on the gap's tolerance once a run is slow: the checks' own standard is far above it."""
 
 
 @final
@@ -88,51 +93,108 @@ class SequentialConvex:
 
     def solve(self, shooting: Shooting, control: Array, *, tolerance: float | None = None) -> LocalAnswer:
         """Improve a control until it is feasible and locally optimal, or say why not."""
-        tolerance = self.tolerance if tolerance is None else tolerance
-        norm = shooting.scaled.problem.norm
-        flight = shooting.fly(control)
-        reference = reference_control(shooting, flight)
-        program = ConeProgram(norm, shooting.cells, shooting.weights, shooting.tolerances)
-        sensitivity = shooting.sensitivity(flight)
-        peak, damping, penalty = float(norm.effort(flight.control).max()), self.damping, 10.0
-        multiplier, gap, reason = (
-            np.zeros(6),
-            np.inf,
-            f"no convergence in {self.max_iterations} convex programs",
-        )
-        rejected = 0
-        iteration = 0
-        while iteration < self.max_iterations:
-            iteration += 1
-            at = Linearisation(flight.control / reference, flight.residual, sensitivity.flat() * reference)
-            step = program.solve(at, penalty=penalty, damping=damping)
-            if not np.all(np.isfinite(step.control)):
-                reason = "the convex program failed"
+        loop = _Loop(shooting, control, self.damping)
+        goal = self.tolerance if tolerance is None else tolerance
+        reason = f"no convergence in {self.max_iterations} convex programs"
+        while loop.iterations < self.max_iterations:
+            if not loop.advance():
+                reason = "no step of the convex program lowers the merit"
                 break
-            penalty = max(2.0, 3.0 * float(np.abs(step.multiplier).max()), 0.3 * penalty)
-            trial = shooting.fly(step.control * reference)
-            trial_peak = float(norm.effort(trial.control).max())
-            before = peak / reference + penalty * shooting.violations(flight.residual).sum()
-            after = trial_peak / reference + penalty * shooting.violations(trial.residual).sum()
-            predicted = before - step.peak - penalty * step.slack
-            ratio = (before - after) / predicted if predicted > 0 else 0.0
-            noise = 1e-10 * (1.0 + before)
-            if ratio < 0.05 and before - after < -noise:
-                damping, rejected = max(8.0 * damping, 1e-3), rejected + 1
-                if rejected > 12:
-                    reason = "no step of the convex program lowers the merit"
-                    break
-                continue
-            rejected = 0
-            flight, peak = trial, trial_peak
-            sensitivity = shooting.sensitivity(flight)
-            dual, multiplier = dual_value(shooting, flight, sensitivity, step.multiplier)
-            gap = abs(peak - dual) / max(peak, 1e-300)
-            if gap <= tolerance and shooting.violations(flight.residual).max() <= tolerance:
+            slack = SLOW_SLACK if loop.iterations > 3 * SLOW else 1.0
+            if loop.gap <= slack * goal and loop.violation <= goal:
                 reason = ""
                 break
-            damping = damping * (0.1 if ratio > 0.7 else 1.0 if ratio > 0.25 else 4.0)
-        return LocalAnswer(shooting, flight, sensitivity, multiplier, peak, gap, iteration, reason)
+        return loop.answer(reason)
+
+
+@final
+class _Loop:
+    """State of one run: the flight, its sensitivity, and how far the linearisation is trusted."""
+
+    def __init__(self, shooting: Shooting, control: Array, damping: float) -> None:
+        self.shooting, self.norm = shooting, shooting.scaled.problem.norm
+        self.flight = shooting.fly(control)
+        self.size = reference_control(shooting, self.flight)
+        self.program = ConeProgram(self.norm, shooting.cells, shooting.weights, shooting.tolerances)
+        self.sensitivity = shooting.sensitivity(self.flight)
+        self.peak = float(self.norm.effort(self.flight.control).max())
+        self.damping, self.penalty = damping, 10.0
+        self.multiplier, self.gap = np.zeros(6), np.inf
+        self.curvature: Curvature | None = None
+        self.iterations = self.accepted = 0
+
+    @property
+    def violation(self) -> float:
+        """Largest terminal violation of the current flight."""
+        return float(self.shooting.violations(self.flight.residual).max())
+
+    def advance(self) -> bool:
+        """Make one accepted step; False if none lowers the merit."""
+        for _ in range(12):
+            at = Linearisation(
+                self.flight.control / self.size, self.flight.residual, self.sensitivity.flat() * self.size
+            )
+            step = self._program(at)
+            trial = self.shooting.fly(step.control * self.size)
+            predicted = self._merit(self.flight) - step.peak - step.bend - self.penalty * step.slack
+            if self.curvature is not None:
+                step, trial = self._corrected(at, step, trial)
+            ratio = -self._loss(trial) / predicted if predicted > 0 else 0.0
+            if ratio >= 0.05 or self._loss(trial) <= 1e-10 * (1.0 + self.penalty * self.violation):
+                self._accept(step, trial, ratio)
+                return True
+            self.damping = max(8.0 * self.damping, 1e-4)
+            if self.curvature is None and self.accepted > 1:
+                self._bend(step.multiplier)
+        return False
+
+    def _program(self, at: Linearisation) -> ConvexStep:
+        self.iterations += 1
+        return self.program.solve(at, penalty=self.penalty, damping=self.damping, curvature=self.curvature)
+
+    def _corrected(self, at: Linearisation, step: ConvexStep, trial: Flight) -> tuple[ConvexStep, Flight]:
+        """Second-order correction: the same program with the residual the trial really had."""
+        shift = trial.residual - at.derivative @ (step.control - at.control).ravel()
+        other = self._program(Linearisation(at.control, shift, at.derivative))
+        flight = self.shooting.fly(other.control * self.size)
+        return (other, flight) if self._merit(flight) < self._merit(trial) else (step, trial)
+
+    def _merit(self, flight: Flight) -> float:
+        effort = float(self.norm.effort(flight.control).max()) / self.size
+        return effort + self.penalty * float(self.shooting.violations(flight.residual).sum())
+
+    def _loss(self, trial: Flight) -> float:
+        """How much a trial raises the merit."""
+        return self._merit(trial) - self._merit(self.flight)
+
+    def _accept(self, step: ConvexStep, trial: Flight, ratio: float) -> None:
+        self.flight, self.accepted = trial, self.accepted + 1
+        self.peak = float(self.norm.effort(trial.control).max())
+        self.sensitivity = self.shooting.sensitivity(trial)
+        dual, self.multiplier = dual_value(self.shooting, trial, self.sensitivity, step.multiplier)
+        self.gap = abs(self.peak - dual) / max(self.peak, 1e-300)
+        self.penalty = max(2.0, 3.0 * float(np.abs(step.multiplier).max()), 0.3 * self.penalty)
+        self.damping = max(self.damping * (0.1 if ratio > 0.7 else 1.0 if ratio > 0.25 else 4.0), 1e-9)
+        if self.curvature is not None or self.accepted > SLOW:
+            self._bend(step.multiplier)
+
+    def _bend(self, multiplier: Array) -> None:
+        self.curvature = lagrangian_curvature(
+            self.shooting, self.flight, self.sensitivity, multiplier, self.size
+        )
+
+    def answer(self, reason: str) -> LocalAnswer:
+        """Hand over the current flight."""
+        return LocalAnswer(
+            self.shooting,
+            self.flight,
+            self.sensitivity,
+            self.multiplier,
+            self.peak,
+            self.gap,
+            self.iterations,
+            reason,
+        )
 
 
 def reference_control(shooting: Shooting, flight: Flight) -> float:

@@ -55,10 +55,17 @@ class Sensitivity:
     response : (6, n cells + 1, m)
         Derivative of the residual by an impulse of control at each edge: the switching function
         is its combination by the multipliers.
+    steps, inputs : (n cells, 7, 7), (n cells, 7, 3)
+        Derivatives of each step by its state and by its torque.
+    adjoint : (n cells + 1, 6, 7)
+        Derivative of the residual by the state at each edge.
     """
 
     terminal: Array
     response: Array
+    steps: Array
+    inputs: Array
+    adjoint: Array
 
     def flat(self) -> Array:
         """Terminal derivative as a matrix, (6, n m)."""
@@ -121,6 +128,9 @@ class Shooting:
         return Sensitivity(
             np.ascontiguousarray(terminal.transpose(1, 0, 2)),
             np.ascontiguousarray(response.transpose(1, 0, 2)),
+            steps=A,
+            inputs=B,
+            adjoint=adjoint,
         )
 
     def violations(self, residual_: Array) -> Array:

@@ -1,6 +1,6 @@
 """The convex step: least peak for the transfer linearised about the current control.
 
-    minimise    p + penalty * slack + (damping / 2) sum_k weight_k |v_k - v0_k|^2
+    minimise    p + penalty * slack + (damping / 2) sum_k weight_k |v_k - v0_k|^2 + curvature
     subject to  residual + G (v - v0) within the terminal set, up to the slack
                 effort(v_k) <= p on every open cell
 
@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..norms import Euclidean, LargestComponent, Norm
+from .curvature import Curvature
 
 Array = NDArray[np.float64]
 
@@ -39,7 +40,8 @@ class ConvexStep:
     Attributes
     ----------
     control : (n, m)
-    peak, slack : float
+    peak, slack, bend : float
+        Peak, terminal slack, and the curvature term at the answer.
     multiplier : (6,)
         Of the terminal rows, so that `multiplier @ derivative` is minus the switching function.
     trusted : bool
@@ -49,6 +51,7 @@ class ConvexStep:
     control: Array
     peak: float
     slack: float
+    bend: float
     multiplier: Array
     trusted: bool
 
@@ -75,6 +78,8 @@ class ConeProgram:
         )
         self._fixed = sparse.vstack([slack, rows]).tocsc()
         self._cones = cones
+        # the variables are changes of control: s = (offset) v0 - A z is the same cone point as for v0 + z
+        self._offset = -self._fixed[:, : self.n_control]
 
     def _effort(self, norm: Norm, sparse: Any) -> tuple[Any, list[Any]]:
         """Rows A with s = -A z in the cones, for effort(v_k) <= p."""
@@ -97,50 +102,68 @@ class ConeProgram:
         lower = sparse.hstack([-identity, lower_peak, empty])
         return sparse.vstack([upper, lower]), [clarabel.NonnegativeConeT(self.n_slack + 2 * n)]
 
-    def solve(self, at: Linearisation, *, penalty: float, damping: float) -> ConvexStep:
-        """Solve the convex program at one linearisation."""
+    def solve(
+        self, at: Linearisation, *, penalty: float, damping: float, curvature: Curvature | None = None
+    ) -> ConvexStep:
+        """Solve the convex program at one linearisation, curvature included."""
         import clarabel
         import scipy.sparse as sparse
 
         n = self.n_control
         centre = at.control.ravel()
-        offset = at.residual - at.derivative @ centre
-        exact_rows, exact_rhs = self._exact_rows(at.derivative, offset)
-        ball_rows, ball_rhs = self._ball_rows(at.derivative, offset)
-        A = sparse.vstack([sparse.csc_matrix(exact_rows), self._fixed, sparse.csc_matrix(ball_rows)]).tocsc()
-        b = np.concatenate([exact_rhs, np.zeros(self._fixed.shape[0]), ball_rhs])
+        extra = 0 if curvature is None else len(curvature.values)
+        exact_rows, exact_rhs = self._exact_rows(at.derivative, at.residual)
+        ball_rows, ball_rhs = self._ball_rows(at.derivative, at.residual)
+        A = sparse.vstack([sparse.csc_matrix(exact_rows), self._fixed, sparse.csc_matrix(ball_rows)])
+        b = np.concatenate([exact_rhs, self._offset @ centre, ball_rhs])
         cones = [clarabel.ZeroConeT(len(exact_rhs)), *self._cones]
         cones += [clarabel.SecondOrderConeT(4) for _ in self.ball]
         diagonal = np.r_[damping * self.weights, np.zeros(1 + self.n_slack)]
-        q = np.r_[-damping * self.weights * centre, 1.0, np.full(self.n_slack, penalty)]
-        solver = clarabel.DefaultSolver(sparse.diags(diagonal).tocsc(), q, A, b, cones, _settings())
+        q = np.r_[np.zeros(n), 1.0, np.full(self.n_slack, penalty)]
+        bend = 0.0
+        if curvature is not None and extra:
+            along = sparse.hstack(
+                [
+                    sparse.csc_matrix(curvature.rows),
+                    sparse.csc_matrix((extra, 1 + self.n_slack)),
+                    -sparse.identity(extra),
+                ]
+            )
+            A = sparse.vstack([sparse.hstack([A, sparse.csc_matrix((A.shape[0], extra))]), along])
+            b = np.concatenate([b, np.zeros(extra)])
+            cones.append(clarabel.ZeroConeT(extra))
+            diagonal, q = np.r_[diagonal, curvature.values], np.r_[q, np.zeros(extra)]
+        solver = clarabel.DefaultSolver(sparse.diags(diagonal).tocsc(), q, A.tocsc(), b, cones, _settings())
         answer = solver.solve()
         z, dual = np.array(answer.x), np.array(answer.z)
+        if curvature is not None and extra:
+            bend = float(curvature.values @ (curvature.rows @ z[:n]) ** 2) / 2
         return ConvexStep(
-            control=z[:n].reshape(self.cells, self.m),
+            control=at.control + z[:n].reshape(self.cells, self.m),
             peak=float(z[n]),
-            slack=float(np.maximum(z[n + 1 :], 0.0).sum()),
-            multiplier=self._multiplier(dual, len(b)),
+            bend=bend,
+            slack=float(np.maximum(z[n + 1 : self.size], 0.0).sum()),
+            multiplier=self._multiplier(dual, len(b) - extra),
             trusted=str(answer.status) in ("Solved", "AlmostSolved"),
         )
 
-    def _exact_rows(self, G: Array, offset: Array) -> tuple[Array, Array]:
+    def _exact_rows(self, G: Array, residual: Array) -> tuple[Array, Array]:
         rows = np.zeros((3 * len(self.exact), self.size))
         for i, block in enumerate(self.exact):
             rows[3 * i : 3 * i + 3, : self.n_control] = G[3 * block : 3 * block + 3]
             start = self.n_control + 1 + 6 * i
             rows[3 * i : 3 * i + 3, start : start + 3] = np.eye(3)
             rows[3 * i : 3 * i + 3, start + 3 : start + 6] = -np.eye(3)
-        rhs = [-offset[3 * block : 3 * block + 3] for block in self.exact]
+        rhs = [-residual[3 * block : 3 * block + 3] for block in self.exact]
         return rows, np.concatenate(rhs) if rhs else np.zeros(0)
 
-    def _ball_rows(self, G: Array, offset: Array) -> tuple[Array, Array]:
+    def _ball_rows(self, G: Array, residual: Array) -> tuple[Array, Array]:
         rows, rhs = np.zeros((4 * len(self.ball), self.size)), np.zeros(4 * len(self.ball))
         for i, block in enumerate(self.ball):
             rows[4 * i, self.n_control + 1 + 6 * len(self.exact) + i] = -1.0
             rhs[4 * i] = self.tolerances[block]
             rows[4 * i + 1 : 4 * i + 4, : self.n_control] = -G[3 * block : 3 * block + 3]
-            rhs[4 * i + 1 : 4 * i + 4] = offset[3 * block : 3 * block + 3]
+            rhs[4 * i + 1 : 4 * i + 4] = residual[3 * block : 3 * block + 3]
         return rows, rhs
 
     def _multiplier(self, dual: Array, rows: int) -> Array:
