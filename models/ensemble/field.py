@@ -13,7 +13,7 @@ from ..closed_loop import ClosedLoop, Saturation, close_loop
 from ..laws import Law
 from ..lowering import ArrayFunction, shared, walk
 from ..simulation.phases import Phase, phase_arguments
-from .steps import Array, Index, Mask
+from .step import Array, Index, Mask
 
 COEFFICIENTS, PARAMETERS, BODY = 2, 3, 4
 """Arguments of the lowered right-hand side after (tau, state)."""
@@ -44,11 +44,8 @@ def representative_loop(structure: Structure) -> ClosedLoop:
     return close_loop(structure.law, structure.saturation)
 
 
-@lru_cache(maxsize=64)
-def lowered_field(
-    structure: Structure, degree: int, uniform: frozenset[int], *, coasting: bool
-) -> ArrayFunction:
-    """Right-hand side (tau, state, coefficients, parameters, body) as an array function.
+def field_function(structure: Structure, degree: int, *, coasting: bool) -> Any:
+    """Right-hand side (tau, state, coefficients, parameters, body) as a CasADi function.
 
     `coasting` is for phases without torque: g and g' are exact zeros and their terms are gone.
     """
@@ -59,9 +56,16 @@ def lowered_field(
     if coasting:
         time[0], time[1] = 0, 0
     (rate,) = ca.substitute([loop.state_rate], [loop.time], [time])
-    rate = ca.densify(ca.SX(rate))
     arguments = [tau, loop.state, coefficients, loop.parameters, loop.body]
-    program = shared(walk(ca.Function("stacked_field", arguments, [rate])))
+    return ca.Function("stacked_field", arguments, [ca.densify(ca.SX(rate))])
+
+
+@lru_cache(maxsize=64)
+def lowered_field(
+    structure: Structure, degree: int, uniform: frozenset[int], *, coasting: bool
+) -> ArrayFunction:
+    """Right-hand side as an array function."""
+    program = shared(walk(field_function(structure, degree, coasting=coasting)))
     return ArrayFunction(program, uniform=sorted({COEFFICIENTS} | uniform))
 
 

@@ -6,7 +6,7 @@ from typing import final
 
 import numpy as np
 
-from .steps import Array, Observer, Step
+from .step import Array, Observer, Step
 
 
 @final
@@ -31,6 +31,11 @@ class GridObserver(Observer):
         values = step.at(x)
         self.states[np.repeat(step.runs, last - first), index[inside]] = values[inside]
         self._next[step.runs] = last
+
+    def place(self, first: int, used: int, begin: int, end: int, values: Array) -> None:
+        """States (end - begin, n, used) of the runs from `first` on, at the times begin, ..., end - 1."""
+        self.states[first : first + used, begin:end] = values.transpose(2, 0, 1)
+        self._next[first : first + used] = end
 
     def close(self) -> None:
         """Mark the times that stopped runs have not reached."""

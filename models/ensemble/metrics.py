@@ -10,7 +10,7 @@ import numpy as np
 from ..simulation.phases import Phase
 from .observables import NAMES, Observables
 from .runs import Runs
-from .steps import Array, Index, Mask, Observer, Step
+from .step import Array, Basis, Index, Mask, Observer, Step, nested
 
 GOLDEN = (np.sqrt(5.0) - 1) / 2
 SCAN = 33
@@ -19,11 +19,11 @@ REFINEMENTS = 36
 
 
 def _nodes() -> tuple[Array, Array]:
-    """Fractions of a step that are looked at (ends, eight Gauss points) and the quadrature weights.
+    """Fractions of a step that are looked at (ends, twelve Gauss points) and the quadrature weights.
 
     One more, just after the start, tells a maximum that lies in this step from one in the step before.
     """
-    x, weights = np.polynomial.legendre.leggauss(8)
+    x, weights = np.polynomial.legendre.leggauss(12)
     return np.concatenate([[0.0, 1e-4], (1 + x) / 2, [1.0]]), np.concatenate([[0.0, 0.0], weights / 2, [0.0]])
 
 
@@ -190,14 +190,24 @@ class _Record:
         self.node = np.zeros(count, dtype=np.intp)
         self.phase = np.zeros(count, dtype=np.intp)
         self.start, self.length = np.zeros(count), np.zeros(count)
-        self.states, self.coefficients = np.zeros((count, size)), np.zeros((count, 7, size))
+        self.states, self.coefficients = np.zeros((count, size)), np.zeros((count, 0, size))
+        self.basis: Basis = nested
 
     def keep_larger(self, step: Step, phase: Index, value: Array, node: Any) -> None:
-        """Remember the step where its value is the largest so far."""
-        self.replace(step, phase, value > self.value[step.runs], value, node)
+        """Remember the step where its value is the largest so far.
+
+        Larger by more than rounding: the end of one step and the start of the next are one state,
+        and the maximum may lie just before it.
+        """
+        best = self.value[step.runs]
+        margin = 1e-12 * np.abs(np.where(self.seen[step.runs], best, 0.0))
+        self.replace(step, phase, value > best + margin, value, node)
 
     def replace(self, step: Step, phase: Index, chosen: Mask, value: Array, node: Any) -> None:
         """Remember the step for the chosen of its runs."""
+        if not self.coefficients.shape[1]:
+            self.coefficients = np.zeros((self.seen.size, *step.coefficients.shape[1:]))
+            self.basis = step.basis
         runs = step.runs[chosen]
         self.seen[runs] = True
         self.value[runs], self.node[runs], self.phase[runs] = value[chosen], node[chosen], phase[chosen]
@@ -206,7 +216,7 @@ class _Record:
 
     def step(self, runs: Index) -> Step:
         """The remembered steps of some runs."""
-        end = self.start[runs] + self.length[runs]
+        start, length = self.start[runs], self.length[runs]
         return Step(
-            runs, self.start[runs], end, self.length[runs], self.states[runs], self.coefficients[runs]
+            runs, start, start + length, length, self.states[runs], self.coefficients[runs], self.basis
         )

@@ -11,7 +11,7 @@ from ..lowering import ArrayFunction, shared, walk
 from ..simulation.phases import Phase, phase_arguments, signal_degree
 from .field import Structure, representative_loop
 from .runs import Runs
-from .steps import Array, Index
+from .step import Array, Index
 
 NAMES = (
     "peak_component",

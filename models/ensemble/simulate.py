@@ -2,27 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Literal, final
+from typing import final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..closed_loop import Saturation
 from ..laws import Law
+from ..lowering import Backend
 from ..rigid_body import RigidBody
 from ..schedule import Schedule
 from ..simulation.phases import Phase, phases_between
 from .grid import GridObserver
 from .metrics import EnsembleMetrics, MetricOptions, MetricsObserver, joined_metrics
 from .runs import Runs, gather_runs
-from .stacked import STACK, integrate_stack
-from .steps import Array, Observer, Tolerances
+from .stacked import STACK, Ends, integrate_stack
+from .step import Array, Observer
+from .steps import Tolerances
 
-Backend = Literal["default", "fast"]
+Integrate = Callable[[Runs, tuple[Phase, ...], Tolerances, tuple[Observer, ...]], Ends]
 
 
 @final
@@ -71,6 +73,7 @@ def simulate_ensemble(
     metrics: MetricOptions | None = None,
     saturation: Saturation | None = None,
     tolerances: Tolerances | None = None,
+    backend: Backend = "default",
     executor: Executor | None = None,
     stack: int = STACK,
 ) -> EnsembleResult:
@@ -95,6 +98,9 @@ def simulate_ensemble(
         Limit on the applied torque.
     tolerances : Tolerances, optional
         Of every single run: no run's error hides in a mean.
+    backend : "default" or "fast"
+        numpy, or heyoka (extra `fast`), which compiles for about a second and then is several
+        times faster; a stack with a run that escapes goes to the default backend.
     executor : concurrent.futures.Executor, optional
         Stacks are handed to its workers (threads, processes, or a cluster that offers the
         same interface).
@@ -106,36 +112,66 @@ def simulate_ensemble(
     ValueError
         On inputs that do not fit each other, naming them.
     """
+    if backend not in ("default", "fast"):
+        raise ValueError(f"backend must be 'default' or 'fast', received {backend!r}")
     runs = gather_runs(laws, bodies, initial_states, saturation)
     grid = _checked_times(times, start, horizon)
     phases = _common_phases(laws, schedule, start, horizon)
     chosen = tolerances if tolerances is not None else Tolerances()
     edges = range(0, runs.count, stack)
     parts = [runs.part(a, min(a + stack, runs.count)) for a in edges]
+    common = (phases, grid, chosen, metrics, backend)
     if executor is None:
-        results = [_simulate_part(part, phases, grid, chosen, metrics) for part in parts]
+        results = [_simulate_part(part, *common) for part in parts]
     else:
-        futures = [executor.submit(_simulate_part, part, phases, grid, chosen, metrics) for part in parts]
+        futures = [
+            executor.submit(_simulate_part, part, phases, grid, chosen, metrics, backend) for part in parts
+        ]
         results = [future.result() for future in futures]
     return _joined(results)
 
 
 def _simulate_part(
-    runs: Runs, phases: tuple[Phase, ...], times: Array, tolerances: Tolerances, options: MetricOptions | None
+    runs: Runs,
+    phases: tuple[Phase, ...],
+    times: Array,
+    tolerances: Tolerances,
+    options: MetricOptions | None,
+    backend: Backend,
 ) -> EnsembleResult:
     """One stack of runs."""
+    if backend == "fast":
+        from .taylor import TaylorError, integrate_taylor
+
+        try:
+            return _observed(integrate_taylor, runs, phases, times, tolerances, options)
+        except TaylorError:
+            pass  # the default backend stops a run that escapes alone, and keeps the others
+    return _observed(integrate_stack, runs, phases, times, tolerances, options)
+
+
+def _observed(
+    integrate: Integrate,
+    runs: Runs,
+    phases: tuple[Phase, ...],
+    times: Array,
+    tolerances: Tolerances,
+    options: MetricOptions | None,
+) -> EnsembleResult:
+    """Integrate a stack and read off what was asked for."""
     size = runs.states.shape[0]
     grid = GridObserver(times, runs.count, size)
     figures = MetricsObserver(runs, phases, options) if options is not None else None
     observers: list[Observer] = [grid] if times.size else []
     observers += [figures] if figures is not None else []
-    ends = integrate_stack(runs, phases, tolerances, tuple(observers))
+    ends = integrate(runs, phases, tolerances, tuple(observers))
     grid.close()
     completed = np.isnan(ends.stop_times)
+    metrics = figures.metrics(completed, float(phases[-1].end)) if figures is not None else None
+    names = runs.loop.state_names
     return EnsembleResult(
-        times, grid.states, ends.states.T, ends.stop_times, ends.evaluations, runs.loop.state_names,
-        figures.metrics(completed, float(phases[-1].end)) if figures is not None else None,
-    )  # fmt: skip
+        times, grid.states, ends.states.T, ends.stop_times, ends.evaluations, names, metrics
+    )
 
 
 def _joined(results: list[EnsembleResult]) -> EnsembleResult:

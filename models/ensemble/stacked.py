@@ -13,7 +13,8 @@ from ..lowering import ArrayFunction, shared, walk
 from ..simulation.phases import Phase, signal_degree
 from .field import StackedField, Structure, representative_loop
 from .runs import Runs
-from .steps import Array, Mask, Observer, Stack, Tolerances
+from .step import Array, Mask, Observer
+from .steps import Stack, Tolerances
 
 STACK = 1024
 """Runs a stack: enough to drown numpy's overhead, few enough for the second-level cache."""
@@ -51,7 +52,7 @@ def integrate_stack(
             if not alive.size:
                 break
             if phase.resets:
-                ends.states[:, alive] = _reset(runs, ends.states)[:, alive]
+                ends.states[:, alive] = reset_states(runs, ends.states)[:, alive]
             field.enter(phase, alive)
             for observer in observers:
                 observer.enter(number)
@@ -79,7 +80,8 @@ def _through(stack: Stack, observers: tuple[Observer, ...], ends: Ends) -> None:
         stack.keep(~gone)
 
 
-def _reset(runs: Runs, states: Array) -> Array:
+def reset_states(runs: Runs, states: Array) -> Array:
+    """States (n, N) after the law has decided anew."""
     function = _reset_function(runs.structure)
     count = runs.count
     parameters, body = (

@@ -8,17 +8,13 @@ DOP853 (Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I).
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol, final
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-Index = NDArray[np.intp]
+from .step import Array, Index, Mask, Observer, Step, nested
 
 STAGES = 12
 SAFETY, LEAST_FACTOR, LARGEST_FACTOR = 0.85, 0.2, 10.0
@@ -33,66 +29,6 @@ class Field(Protocol):
 
     def keep(self, kept: Mask) -> None:
         """Drop the runs that have left the stack."""
-
-
-class Observer(ABC):
-    """Something that reads accepted steps as they are made."""
-
-    def enter(self, phase: int) -> None:  # noqa: B027 - most observers do not care
-        """Note the number of the phase that begins."""
-
-    @abstractmethod
-    def see(self, step: Step) -> None:
-        """Read one accepted step of some runs."""
-
-
-@final
-@dataclass(frozen=True, eq=False)
-class Step:
-    """One accepted step of m runs.
-
-    Attributes
-    ----------
-    runs : (m,) numbers of the runs
-    start, end, length : (m,), s
-    states : (m, n) at the start
-    coefficients : (m, 7, n), the interpolant's
-    """
-
-    runs: Index
-    start: Array
-    end: Array
-    length: Array
-    states: Array
-    coefficients: Array
-
-    def at(self, x: Array) -> Array:
-        """States (m, p, n) at the fractions x (m, p) or (p,) of the steps."""
-        fractions = np.broadcast_to(x, (self.runs.size, x.shape[-1]))
-        values: Array = np.matmul(_basis(fractions), self.coefficients)
-        values += self.states[:, None, :]
-        return values
-
-    def end_states(self) -> Array:
-        """States (m, n) at the end."""
-        return np.asarray(self.states + self.coefficients[:, 0])
-
-    def only(self, chosen: Mask | Index) -> Step:
-        """The same step of some of the runs."""
-        return Step(
-            self.runs[chosen], self.start[chosen], self.end[chosen], self.length[chosen],
-            self.states[chosen], self.coefficients[chosen],
-        )  # fmt: skip
-
-
-def _basis(x: Array) -> Array:
-    """Basis (m, p, 7) of the interpolant: x, x(1-x), x^2(1-x), ..."""
-    basis = np.empty((*x.shape, 7))
-    rest = 1 - x
-    basis[..., 0] = x
-    for i in range(1, 7):
-        np.multiply(basis[..., i - 1], rest if i % 2 else x, out=basis[..., i])
-    return basis
 
 
 @final
@@ -253,7 +189,7 @@ class Stack:
         F[3:] = np.dot(TABLEAU.interpolant, flat).reshape(4, *y.shape)
         F[3:] *= h
         coefficients = np.ascontiguousarray(F.transpose(2, 0, 1))
-        step = Step(self.runs, t, arrived, h, np.ascontiguousarray(y.T), coefficients)
+        step = Step(self.runs, t, arrived, h, np.ascontiguousarray(y.T), coefficients, nested)
         return step if accepted.all() else step.only(accepted)
 
     @property
