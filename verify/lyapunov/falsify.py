@@ -1,0 +1,251 @@
+"""Falsifier: a multi-start gradient search for a state and a schedule phase with V' > 0.
+
+Coordinates in which V'/W is smooth down to the equilibrium: half the error angle theta on a
+logarithmic scale, its axis, Omega/theta, controller states, and the time within one piece of the
+schedule. A violation found in floats is moved to rationals and evaluated again exactly; only then
+is it one. Finding none proves nothing.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, final
+
+import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
+
+from ...models.closed_loop import body_values
+from ...models.laws import Expression
+from ...models.lowering import UnknownOperationError, evaluate
+from ...models.rigid_body import RigidBody
+from ...models.schedule import Schedule
+from ..rational_quantity import rational_quantity
+from ..verdict import Witness
+from .candidates import Candidate
+from .exact_states import (
+    EXACT,
+    ExactDerivative,
+    ExactState,
+    IrrationalError,
+    loop_arguments,
+    program_of,
+    rational_quaternion,
+)
+
+Array = NDArray[np.float64]
+SMALLEST_ANGLE = 1e-3
+"""Least half error angle searched, rad: V'/W tends to its limit at the equilibrium like its square."""
+LARGEST_RATIO = 20.0
+"""Largest component of Omega over half the error angle, 1/s."""
+FLOOR_TARGET = Fraction(1)
+"""k* = 1/R_min of the search, 1/s; R is searched above R_min."""
+
+
+@final
+@dataclass(frozen=True, kw_only=True)
+class Falsifier:
+    """How to search: random points, of which the best start a gradient search on each piece of g.
+
+    Attributes
+    ----------
+    points : random states tried on each piece
+    starts : how many of them start a search
+    seed : of the random states
+    largest : upper end of the controller states searched (their units)
+    """
+
+    points: int = 400
+    starts: int = 8
+    seed: int = 1
+    largest: float = 5.0
+
+    def __post_init__(self) -> None:
+        if self.points < 1 or not 1 <= self.starts <= self.points or self.largest <= 1:
+            raise ValueError("falsifier: expected points >= starts >= 1 and largest > 1")
+
+
+@final
+@dataclass(frozen=True)
+class Falsification:
+    """What the search found.
+
+    Attributes
+    ----------
+    worst : largest V'/W found, 1/s, in floats
+    witness : exact state with V' > 0, or None
+    evaluations : how often V' was evaluated
+    reason : why a violation seen in floats has no exact witness, if so
+    """
+
+    worst: float
+    witness: Witness | None
+    evaluations: int
+    reason: str = ""
+
+
+def falsify(
+    candidate: Candidate,
+    body: RigidBody,
+    *,
+    schedule: Schedule | None = None,
+    weight: Fraction = Fraction(1),
+    options: Falsifier | None = None,
+) -> Falsification:
+    """Search for V' > 0.
+
+    Parameters
+    ----------
+    schedule : Schedule or None
+        Phases to search, one piece after another; without it a smooth unit pulse of one second.
+    weight : Fraction
+        The weight a where the storage function leaves it free.
+    """
+    options = options or Falsifier()
+    search = _Search(candidate, body, weight, options)
+    for coefficients, length in _pieces(schedule):
+        search.on_piece(coefficients, length)
+    search.found.sort(key=lambda item: -item[0])
+    reason = ""
+    for value, z, coefficients in search.found:
+        if value <= 0:
+            break
+        witness, reason = search.exact_witness(z, coefficients)
+        if witness is not None:
+            return Falsification(search.found[0][0], witness, search.evaluations)
+    return Falsification(search.found[0][0], None, search.evaluations, reason)
+
+
+def _pieces(schedule: Schedule | None) -> list[tuple[tuple[Fraction, ...], Fraction]]:
+    """Distinct pieces of g: coefficients in the time since its start, and duration."""
+    if schedule is None:
+        return [((Fraction(0), Fraction(0), Fraction(3), Fraction(-2)), Fraction(1)), ((), Fraction(1))]
+    profile = schedule.profile
+    return list({(piece.local_coefficients(), piece.length) for piece in profile.pieces})
+
+
+class _Search:
+    """One search: the objective, its gradient, and what was found so far."""
+
+    def __init__(self, candidate: Candidate, body: RigidBody, weight: Fraction, options: Falsifier) -> None:
+        self._candidate, self._body, self._weight, self._options = candidate, body, weight, options
+        self._states = [s.name for s in candidate.loop.law.controller_states]
+        self._signals = candidate.loop.time.shape[0] - 2
+        self._random = np.random.default_rng(options.seed)
+        self._objective, self._gradient = _objective(candidate, body, weight)
+        self.evaluations = 0
+        self.found: list[tuple[float, Array, tuple[Fraction, ...]]] = []
+
+    def on_piece(self, coefficients: tuple[Fraction, ...], length: Fraction) -> None:
+        """Search one piece of g."""
+        from scipy.optimize import minimize
+
+        padded = np.zeros(DEGREE + 1)
+        padded[: len(coefficients)] = [float(c) for c in coefficients]
+        low, high = self._bounds(float(length))
+        points = low + (high - low) * self._random.random((self._options.points, len(low)))
+        values = np.array([float(self._objective(p, padded)) for p in points])
+        self.evaluations += len(points)
+        order = np.argsort(values)
+        for start in points[order[: self._options.starts]]:
+            result = minimize(
+                lambda z: (float(self._objective(z, padded)), np.asarray(self._gradient(z, padded)).ravel()),
+                start,
+                jac=True,
+                method="L-BFGS-B",
+                bounds=list(zip(low, high, strict=True)),
+            )
+            self.evaluations += int(result.nfev)
+            self.found.append((-float(result.fun), np.asarray(result.x), coefficients))
+
+    def _bounds(self, length: float) -> tuple[Array, Array]:
+        """Box of (log theta, axis (3), Omega/theta (3), controller states, signals, time)."""
+        largest, n = self._options.largest, len(self._states)
+        low = [math.log(SMALLEST_ANGLE), -1, -1, -1, *[-LARGEST_RATIO] * 3]
+        high = [math.log(math.pi), 1, 1, 1, *[LARGEST_RATIO] * 3]
+        above_floor = self._candidate.floor is not None
+        for name in self._states:
+            least = (float(1 / FLOOR_TARGET) if above_floor else 0.05) if name == "R" else 0.0
+            low.append(least)
+            high.append(largest)
+        del n
+        low += [-1.0] * self._signals + [0.0]
+        high += [1.0] * self._signals + [length]
+        return np.array(low), np.array(high)
+
+    def exact_witness(self, z: Array, coefficients: Sequence[Fraction]) -> tuple[Witness | None, str]:
+        """Move a violation to rationals and evaluate V' there."""
+        try:
+            state = self._exact_state(z, coefficients)
+            J = self._body.exact_inertia
+            rate, reference, _ = ExactDerivative(self._candidate, J, weight=self._weight).at(state)
+        except (IrrationalError, UnknownOperationError, ZeroDivisionError) as error:
+            return None, f"V' > 0 was seen in floats but could not be evaluated exactly: {error}"
+        if rate <= 0:
+            return None, "V' > 0 was seen in floats but not at the rational state beside it"
+        values = state.floats() | {"W": float(reference)}
+        if self._candidate.floor is not None:
+            values["k_target"] = float(state.floor)
+        return Witness("at this state V grows", values, rational_quantity("V'", rate)), ""
+
+    def _exact_state(self, z: Array, coefficients: Sequence[Fraction]) -> ExactState:
+        theta = math.exp(z[0])
+        axis = z[1:4] / np.linalg.norm(z[1:4])
+        quaternion = rational_quaternion([math.cos(theta), *(math.sin(theta) * axis)])
+        omega = [Fraction(float(x)).limit_denominator(10**9) for x in theta * z[4:7]]
+        end = 7 + len(self._states)
+        controller = {
+            name: Fraction(float(x)).limit_denominator(10**6)
+            for name, x in zip(self._states, z[7:end], strict=True)
+        }
+        if self._candidate.floor is not None and "R" in controller:
+            controller["R"] = max(controller["R"], 1 / FLOOR_TARGET)
+        tau = Fraction(float(z[-1])).limit_denominator(10**6)
+        gain = sum((c * tau**i for i, c in enumerate(coefficients)), Fraction(0))
+        gain_rate = sum((i * c * tau ** (i - 1) for i, c in enumerate(coefficients) if i), Fraction(0))
+        signals = tuple(Fraction(float(x)).limit_denominator(10**6) for x in z[end:-1])
+        state = ExactState(quaternion, tuple(omega), controller, gain, gain_rate, FLOOR_TARGET, signals)
+        shift = self._exact_shift(state)
+        rate = tuple(x - y for x, y in zip(omega, shift, strict=True))
+        return ExactState(quaternion, rate, controller, gain, gain_rate, FLOOR_TARGET, signals)
+
+    def _exact_shift(self, state: ExactState) -> list[Fraction]:
+        loop = self._candidate.loop
+        program = program_of(loop, [], [self._candidate.shift])
+        body = [Fraction(0)] * 12  # the shift does not use the inertia
+        return evaluate(program, EXACT, loop_arguments(loop, state, body), Fraction)[0]
+
+
+DEGREE = 7
+"""Largest degree of a piece of g that the search takes."""
+
+
+def _objective(candidate: Candidate, body: RigidBody, weight: Fraction) -> tuple[Any, Any]:
+    """-V'/W and its gradient as CasADi functions of (coordinates, coefficients of g)."""
+    loop = candidate.loop
+    signals = loop.time.shape[0] - 2
+    n = len(loop.controller_states)
+    z, coefficients = ca.SX.sym("z", 7 + n + signals + 1), ca.SX.sym("coefficients", DEGREE + 1)
+    theta, axis = ca.exp(z[0]), z[1:4] / ca.sqrt(ca.sumsqr(z[1:4]) + 1e-12)
+    tau = z[-1]
+    g = sum((coefficients[i] * tau**i for i in range(DEGREE + 1)), ca.SX(0))
+    replaced: dict[str, Expression] = {"b0": ca.cos(theta), "bv": ca.sin(theta) * axis}
+    rate = loop.total_derivative(candidate.value) if candidate.derivative is None else candidate.derivative
+    reference = ca.SX(candidate.reference)
+    symbols = [loop.plant.b0, loop.plant.bv, *loop.controller_states.values(), loop.time]
+    time = ca.vertcat(g, ca.jacobian(g, tau), z[7 + n : 7 + n + signals])
+    values = [replaced["b0"], replaced["bv"], *(z[7 + i] for i in range(n)), time]
+    for symbol, number in ((candidate.floor, FLOOR_TARGET), (candidate.weight, weight)):
+        if symbol is not None:
+            symbols, values = [*symbols, symbol], [*values, ca.SX(float(number))]
+    symbols = [*symbols, loop.parameters, loop.body]
+    values = [*values, ca.SX(loop.parameter_values()), ca.SX(body_values(body))]
+    w = theta * z[4:7] - ca.SX(candidate.shift)
+    rate, reference = ca.substitute([ca.SX(rate), reference], [loop.plant.w], [w])
+    rate, reference = ca.substitute([rate, reference], symbols, values)
+    value = -rate / (ca.fabs(reference) + 1e-3 * ca.sin(theta) ** 2 + 1e-14)
+    arguments = [z, coefficients]
+    return ca.Function("f", arguments, [value]), ca.Function("df", arguments, [ca.gradient(value, z)])
