@@ -10,6 +10,7 @@ from ..models.laws import Law
 from ..scenario import LawChoice, Scenario
 from ..verify.derivative import SampledDerivative, with_samples
 from ..verify.filter_start import filter_start_claim
+from ..verify.lyapunov import lyapunov_claims
 from ..verify.verdict import Claim, Verdict
 from .keys import CLAIM_KEYS, order_of
 from .run import Run, run_law
@@ -42,7 +43,10 @@ class Case:
 def check_case(scenario: Scenario, choice: LawChoice, *, simulate: bool, progress: Progress) -> Case:
     """Decide every claim about one law, and run it."""
     law = choice.build()
-    claims = {claim.key: claim for claim in _filter_claims(scenario, law)}
+    progress("proof of V'", 0.0)
+    claims = {
+        claim.key: claim for claim in (*_filter_claims(scenario, law), *_lyapunov_claims(scenario, law))
+    }
     notes: list[str] = []
     run = None
     if simulate:
@@ -67,6 +71,13 @@ def _filter_claims(scenario: Scenario, law: Law) -> Iterator[Claim]:
     decay = law.parameters.get("lambda")
     if "R" in initial and decay is not None:
         yield filter_start_claim(scenario.schedule, decay=decay, initial=initial["R"])
+
+
+def _lyapunov_claims(scenario: Scenario, law: Law) -> tuple[Claim, ...]:
+    """Claims about the law's storage function, proved over the inertia's whole tolerance."""
+    return lyapunov_claims(
+        law, scenario.body, tolerance=scenario.inertia_tolerance, schedule=scenario.schedule
+    )
 
 
 def _add_samples(claims: dict[str, Claim], samples: SampledDerivative) -> None:

@@ -45,6 +45,41 @@ class RateDamping(Law):
 
 
 @dataclass(frozen=True)
+class PlainDamping(Law):
+    """u = -damping w, applied as g u: V' = -g damping |w|^2 has a sign only because g >= 0."""
+
+    name: ClassVar[str] = "plain-damping"
+    damping: Fraction
+
+    def control(self, plant, time, states, parameters) -> Control:
+        return Control(-parameters["damping"] * plant.w)
+
+    def storage(self, plant, time, states, parameters):
+        return ca.dot(plant.w, plant.J @ plant.w) / 2
+
+
+@dataclass(frozen=True)
+class SineFeedback(Law):
+    """u = -sin(w): not algebraic, so out of the method's reach."""
+
+    name: ClassVar[str] = "sine-feedback"
+
+    def control(self, plant, time, states, parameters) -> Control:
+        return Control(-time.g * ca.sin(plant.w))
+
+    def storage(self, plant, time, states, parameters):
+        return ca.dot(plant.w, plant.J @ plant.w) / 2
+
+
+@dataclass(frozen=True)
+class Resetting(PlainDamping):
+    """A law that decides anew at stated instants."""
+
+    def reset_instants(self, schedule, start, stop):
+        return (start,)
+
+
+@dataclass(frozen=True)
 class HeavierDamping(Law):
     """The persistence filter with `factor` times its damping, V_a of its own with a = 1."""
 

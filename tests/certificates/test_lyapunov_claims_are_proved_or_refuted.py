@@ -27,6 +27,7 @@ from intermit.verify.lyapunov.definiteness import negative_direction, quadratic
 from intermit.verify.lyapunov.exact_states import rational_direction, rational_quaternion
 from intermit.verify.lyapunov.identity import random_state
 from intermit.verify.verdict import Verdict
+from problems import paper_schedule
 
 SHARP_J1 = 0.5 / np.sqrt(cases.J1.principal_inertias[0])
 
@@ -154,11 +155,30 @@ def test_a_users_law_goes_through_the_same_pipeline():
     assert all(f.valid for f in checker.check_text(certificate_text(certificates_of([claim]))))
 
 
-def test_a_users_law_that_is_unstable_is_not_proved():
+def test_a_users_law_that_is_unstable_is_refuted():
     (claim,) = lyapunov_claims(cases.RateDamping(F("-0.3")), cases.J1)
-    assert claim.verdict is not Verdict.PROVED
+    assert claim.verdict is Verdict.REFUTED
     (claim,) = lyapunov_claims(cases.HeavierDamping(F("0.525"), F(1), F("0.5")), cases.J1)
-    assert claim.verdict is not Verdict.PROVED
+    assert claim.verdict is Verdict.REFUTED
+    assert claim.witness.violation.low > 0
+
+
+def test_a_sign_that_needs_the_range_of_g_is_proved_for_the_schedule_only():
+    law = cases.PlainDamping(F("0.3"))
+    (claim,) = lyapunov_claims(law, cases.J1)
+    assert claim.verdict is Verdict.UNDECIDED
+    (claim,) = lyapunov_claims(law, cases.J1, schedule=paper_schedule())
+    assert claim.verdict is Verdict.PROVED
+    assert "0 <= g <= 1" in claim.statement
+
+
+@pytest.mark.parametrize(
+    ("law", "reason"), [(cases.SineFeedback(), "sin"), (cases.Resetting(F(1)), "resets its states")]
+)
+def test_beyond_the_method_is_undecided_with_the_reason(law, reason):
+    (claim,) = lyapunov_claims(law, cases.J1)
+    assert claim.verdict is Verdict.UNDECIDED
+    assert reason in claim.reason
 
 
 def test_derivative_as_the_checker_derives_it_equals_the_models():

@@ -6,6 +6,7 @@ from .conditions import paper_condition, sharp_condition, sharp_threshold
 from .decay import best_weight, derivative_claim, rate_claim
 from .derivative import DecayCertificate, NoCertificateError, certify_decay
 from .exact_states import ExactDerivative, ExactState
+from .falsify import Falsification, Falsifier, falsify
 from .identity import identity_certificate, identity_claim
 
 __all__ = [
@@ -13,6 +14,8 @@ __all__ = [
     "DecayCertificate",
     "ExactDerivative",
     "ExactState",
+    "Falsification",
+    "Falsifier",
     "NoCertificateError",
     "NoStorageError",
     "best_weight",
@@ -20,6 +23,7 @@ __all__ = [
     "certificates_of",
     "certify_decay",
     "derivative_claim",
+    "falsify",
     "identity_certificate",
     "identity_claim",
     "lyapunov_claims",

@@ -19,7 +19,7 @@ from typing import final
 import casadi as ca
 
 from ...models.closed_loop import ClosedLoop
-from ...models.laws import Expression
+from ...models.laws import Expression, Law
 from ...models.storage import weighted_storage
 
 
@@ -62,8 +62,10 @@ def candidate(loop: ClosedLoop) -> Candidate:
     Raises
     ------
     NoStorageError
-        If there is neither.
+        If there is neither, or the law's states jump.
     """
+    if type(loop.law).reset_instants is not Law.reset_instants:
+        raise NoStorageError(f"law {loop.law.name} resets its states: a jump of V is not covered by V' <= 0")
     own = loop.law.storage(loop.plant, loop.time_symbols, loop.controller_states, loop.parameter_symbols)
     if own is not None:
         return _own(loop, own)

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from fractions import Fraction
 
 from ...models.closed_loop import close_loop
 from ...models.laws import Law
 from ...models.rigid_body import RigidBody
+from ...models.schedule import Schedule
 from ..certificates.format import Certificate
 from ..verdict import Claim, Verdict
 from .candidates import NoStorageError, candidate
 from .conditions import ExactRows, paper_condition, sharp_condition
 from .decay import derivative_claim, rate_claim
-from .exact_states import ExactState
 from .identity import identity_claim
 
 
@@ -22,8 +22,7 @@ def lyapunov_claims(
     body: RigidBody,
     *,
     tolerance: ExactRows | None = None,
-    gain_bound: Fraction | None = None,
-    suspects: Sequence[ExactState] = (),
+    schedule: Schedule | None = None,
 ) -> tuple[Claim, ...]:
     """Claims lyapunov.identity, lyapunov.derivative, lambda.paper, lambda.sharp, lambda.rate that apply.
 
@@ -32,9 +31,9 @@ def lyapunov_claims(
     law, body : the closed loop
     tolerance : (3, 3) exact or None
         Largest deviation of each entry of the inertia, kg m^2; claims then hold for the whole box.
-    gain_bound : Fraction or None
-        Restrict the claim on V' to 0 <= g <= gain_bound (laws of one's own may need it).
-    suspects : states to try against V' <= 0 where no certificate is found
+    schedule : Schedule or None
+        Where V' <= 0 cannot be certified for every g, certify it for 0 <= g <= the schedule's largest;
+        and the phases searched for a violation.
 
     Notes
     -----
@@ -48,9 +47,7 @@ def lyapunov_claims(
     claims: list[Claim] = []
     identity = identity_claim(chosen, body.exact_inertia)
     claims += [identity] if identity is not None else []
-    claims.append(
-        derivative_claim(chosen, body, tolerance=tolerance, gain_bound=gain_bound, suspects=suspects)
-    )
+    claims.append(derivative_claim(chosen, body, tolerance=tolerance, schedule=schedule))
     if chosen.right_side is not None and "lambda" in law.parameters:
         lam = law.parameters["lambda"]
         claims.append(paper_condition(lam, body, tolerance=tolerance))

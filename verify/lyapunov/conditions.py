@@ -24,7 +24,7 @@ from .forms import inertia_data
 
 ExactRows = Sequence[Sequence[Fraction]]
 PAPER = "Ram & Akella, AAS 21-402, condition on lambda"
-SHARP = "docs/proofs.md: largest value of Q over the rate, at b0 -> 1"
+SHARP = "docs/theory-lyapunov.md: largest value of Q over the rate, at b0 -> 1"
 
 
 def paper_condition(lam: Fraction, body: RigidBody, *, tolerance: ExactRows | None = None) -> Claim:

@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
 from ...models.rigid_body import RigidBody
+from ...models.schedule import Schedule
+from ...models.schedule.polynomial import bernstein
 from ..certificates.format import Certificate
 from ..rational_quantity import rational_quantity
 from ..verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict, Witness
 from .candidates import Candidate
 from .conditions import ExactRows, sharp_condition, vertices
 from .derivative import DecayCertificate, NoCertificateError, certify_decay
-from .exact_states import ExactState
+from .falsify import falsify
 from .identity import identity_certificate
 from .refutation import refute_sign
 
-SOURCE = "docs/proofs.md: sums of squares on the sphere; Ram & Akella, AAS 21-402"
+SOURCE = "docs/theory-lyapunov.md; Ram & Akella, AAS 21-402"
 NEXT_STEP = "raise lambda, or give the law a storage function of its own (Law.storage)"
 
 
@@ -28,32 +29,34 @@ def derivative_claim(
     body: RigidBody,
     *,
     tolerance: ExactRows | None = None,
-    gain_bound: Fraction | None = None,
-    suspects: Sequence[ExactState] = (),
+    schedule: Schedule | None = None,
 ) -> Claim:
     """Claim V' <= 0 on the whole domain (key lyapunov.derivative), the paper's V or the law's own.
 
-    Parameters
-    ----------
-    suspects : states to try first if no certificate is found
+    For every value of g first; where that fails and a schedule is given, for 0 <= g <= its largest.
     """
+    key, weight = "lyapunov.derivative", Fraction(1)
     statement = f"V' <= 0 at every attitude and rate{_where(candidate)}"
-    weight = Fraction(1)
-    try:
-        proof = _certify(candidate, body, tolerance, weight, gain_bound)
-    except NoCertificateError as error:
-        reason = str(error)
-    else:
-        return _proved(
-            "lyapunov.derivative", f"V' <= -rho W <= 0 with rho = {float(proof.rate):.9g} 1/s", proof
-        )
-    witness = _refute(candidate, body, tolerance, weight, suspects)
+    reason = ""
+    for bound in (None, *(() if schedule is None else (largest_gain(schedule),))):
+        try:
+            proof = _certify(candidate, body, tolerance, weight, bound)
+        except NoCertificateError as error:
+            reason = str(error)
+        else:
+            within = "" if bound is None else f", 0 <= g <= {float(bound):.6g}"
+            rho = f"V' <= -rho W with rho = {float(proof.rate):.9g} 1/s{_where(candidate)}{within}"
+            return _proved(key, rho, proof)
+    witness = _refute(candidate, body, tolerance, weight)
     if witness is not None:
-        return _claim("lyapunov.derivative", statement, Verdict.REFUTED, witness=witness)
+        return _claim(key, statement, Verdict.REFUTED, witness=witness)
     theorem = _by_sharp_condition(candidate, body, tolerance)
     if theorem:
-        return _claim("lyapunov.derivative", statement, Verdict.PROVED, evidence=theorem)
-    return _claim("lyapunov.derivative", statement, Verdict.UNDECIDED, reason=reason)
+        return _claim(key, statement, Verdict.PROVED, evidence=theorem)
+    search = falsify(candidate, body, schedule=schedule, weight=weight)
+    if search.witness is not None:
+        return _claim(key, statement, Verdict.REFUTED, witness=search.witness)
+    return _claim(key, statement, Verdict.UNDECIDED, reason=f"{reason}; {search.summary}")
 
 
 def rate_claim(
@@ -75,7 +78,7 @@ def rate_claim(
     try:
         proof = _certify(candidate, body, tolerance, weight, None)
     except NoCertificateError as error:
-        witness = _refute(candidate, body, tolerance, weight or Fraction(1), ())
+        witness = _refute(candidate, body, tolerance, weight or Fraction(1))
         if witness is not None:
             return _claim("lambda.rate", statement, Verdict.REFUTED, witness=witness)
         return _claim("lambda.rate", statement, Verdict.UNDECIDED, reason=str(error))
@@ -85,6 +88,11 @@ def rate_claim(
     sized = f"V{named}: V' <= -rho W with rho = {float(proof.rate):.9g} 1/s{_where(candidate)}"
     extra = () if weight is None else (rational_quantity("weight", weight, unit="kg m^2/s^2"),)
     return _proved("lambda.rate", sized, proof, extra)
+
+
+def largest_gain(schedule: Schedule) -> Fraction:
+    """Upper bound on g: the largest Bernstein coefficient of its pieces."""
+    return max(max(bernstein(shape), default=Fraction(0)) for shape in schedule.profile.shapes)
 
 
 def best_weight(lam: Fraction, body: RigidBody, tolerance: ExactRows | None = None) -> Fraction:
@@ -125,10 +133,9 @@ def _refute(
     body: RigidBody,
     tolerance: ExactRows | None,
     weight: Fraction,
-    suspects: Sequence[ExactState],
 ) -> Witness | None:
     for J in vertices(body.exact_inertia, tolerance):
-        witness = refute_sign(candidate, J, weight, suspects)
+        witness = refute_sign(candidate, J, weight)
         if witness is not None:
             return witness
     return None

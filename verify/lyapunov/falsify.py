@@ -39,6 +39,8 @@ from .exact_states import (
 Array = NDArray[np.float64]
 SMALLEST_ANGLE = 1e-3
 """Least half error angle searched, rad: V'/W tends to its limit at the equilibrium like its square."""
+ROUNDING = 1e-12
+"""Values of V'/W (1/s) below this are rounding."""
 LARGEST_RATIO = 20.0
 """Largest component of Omega over half the error angle, 1/s."""
 FLOOR_TARGET = Fraction(1)
@@ -86,6 +88,14 @@ class Falsification:
     evaluations: int
     reason: str = ""
 
+    @property
+    def summary(self) -> str:
+        """The search in a few words."""
+        return (
+            self.reason
+            or f"a gradient search of {self.evaluations} evaluations found V'/W <= {self.worst:.3g} 1/s"
+        )
+
 
 def falsify(
     candidate: Candidate,
@@ -111,7 +121,7 @@ def falsify(
     search.found.sort(key=lambda item: -item[0])
     reason = ""
     for value, z, coefficients in search.found:
-        if value <= 0:
+        if value <= ROUNDING:
             break
         witness, reason = search.exact_witness(z, coefficients)
         if witness is not None:
@@ -163,7 +173,7 @@ class _Search:
 
     def _bounds(self, length: float) -> tuple[Array, Array]:
         """Box of (log theta, axis (3), Omega/theta (3), controller states, signals, time)."""
-        largest, n = self._options.largest, len(self._states)
+        largest = self._options.largest
         low = [math.log(SMALLEST_ANGLE), -1, -1, -1, *[-LARGEST_RATIO] * 3]
         high = [math.log(math.pi), 1, 1, 1, *[LARGEST_RATIO] * 3]
         above_floor = self._candidate.floor is not None
@@ -171,7 +181,6 @@ class _Search:
             least = (float(1 / FLOOR_TARGET) if above_floor else 0.05) if name == "R" else 0.0
             low.append(least)
             high.append(largest)
-        del n
         low += [-1.0] * self._signals + [0.0]
         high += [1.0] * self._signals + [length]
         return np.array(low), np.array(high)

@@ -15,7 +15,7 @@ from .candidates import Candidate
 from .exact_states import ExactDerivative, ExactRows, ExactState, rational_quaternion
 from .forms import law_form, storage_form
 
-SOURCE = "docs/proofs.md: exact derivative of the storage function; Ram & Akella, AAS 21-402"
+SOURCE = "docs/theory-lyapunov.md; Ram & Akella, AAS 21-402"
 TRIES = 20
 
 

@@ -1,9 +1,9 @@
-"""States with V' > 0, exactly: constructed for the weighted family, otherwise taken from a search."""
+"""States with V' > 0, exactly, constructed for the weighted family below its sharp condition."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from fractions import Fraction
 
 from ..checker import Matrix
@@ -16,12 +16,10 @@ from .exact_states import ExactDerivative, ExactState, rational_direction
 SIZES = tuple(Fraction(1, 2**n) for n in range(2, 40, 3))
 
 
-def refute_sign(
-    candidate: Candidate, J: Matrix, weight: Fraction, states: Sequence[ExactState] = ()
-) -> Witness | None:
-    """State with V' > 0 at one inertia, or None; tries the given states, then the family's own."""
+def refute_sign(candidate: Candidate, J: Matrix, weight: Fraction) -> Witness | None:
+    """State of the family's own construction with V' > 0 at one inertia, or None."""
     derivative = ExactDerivative(candidate, J, weight=weight)
-    for state in (*states, *_family_states(candidate, J, weight)):
+    for state in _family_states(candidate, J, weight):
         rate, reference, _ = derivative.at(state)
         if rate > 0:
             violation = rational_quantity("V'", rate)
