@@ -23,6 +23,9 @@ from .sets import InitialSet
 from .tail import Tail, find_tail
 from .witness import LawComparison, Witness
 
+WINDOW_BUDGET = 240
+"""Bins times windows of a finite table."""
+
 
 @final
 @dataclass(frozen=True)
@@ -87,7 +90,9 @@ class Floor:
 
 
 def comparison_system(law: Law, bounds: BodyBounds) -> LawComparison | None:
-    """Return the comparison system of a law, or None for laws that have none."""
+    """Return the comparison system of a law, or None for laws (or lambda, R(0) <= 0) that have none."""
+    if law.parameters.get("lambda", 0) <= 0 or law.parameters.get("R0", 0) <= 0:
+        return None
     c = bounds.coupling
     if isinstance(law, PersistenceFilter):
         return PersistenceSystem(decay=law.lambda_, initial_filter=law.R0, coupling=c)
@@ -202,16 +207,24 @@ class _Run:
         """Halve the worst bin again and again: most by the floor of the first windows, then by all."""
         stop = self._early_end()
         weight = bounds.coupling * float(stop) / 4
-        most = 1 + 3 * (self.options.max_bins - 1) // 4
+        most = 1 + 3 * (self._max_bins - 1) // 4
         first = self._halve([self.early(initial, stop)], weight, most, lambda b: self.early(b, stop))
         return tuple(
             self._halve(
                 [self.complete(w) for w in first],
                 weight,
-                self.options.max_bins,
+                self._max_bins,
                 lambda b: self.complete(self.early(b, stop)),
             )
         )
+
+    @property
+    def _max_bins(self) -> int:
+        """Bins, fewer for long finite tables: the work is bins times windows."""
+        if self.schedule.period is not None or self.horizon is None:
+            return self.options.max_bins
+        windows = sum(1 for _ in self.schedule.windows_between(Fraction(0), self.horizon))
+        return max(1, min(self.options.max_bins, WINDOW_BUDGET // max(windows, 1)))
 
     @staticmethod
     def _halve(

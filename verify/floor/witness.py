@@ -40,7 +40,8 @@ class Box:
     weighted_rate : upper bound of y = |Omega|_J, sqrt(kg m^2) rad/s
     filter_low, filter_high : bounds of R, s
     gain_low, gain_high : bounds of kappa, 1/s
-    gain_max, slope_max : greatest g and |g'| (1/s) in the interval
+    gain_max : greatest g in the interval
+    slope_low, slope_high : bounds of g' in the interval, 1/s
     """
 
     start: float
@@ -52,7 +53,8 @@ class Box:
     gain_low: float
     gain_high: float
     gain_max: float
-    slope_max: float
+    slope_low: float
+    slope_high: float
 
 
 class LawComparison(PeriodicSystem):
@@ -157,23 +159,24 @@ def step_boxes(
     for name, value in (fixed or {}).items():
         high[name] = np.full(parts, value)
     fields = system.bounds(low, high)
-    gains, slopes = _gain_extremes(step.shape, step.part, step.length, parts)
+    shared = _gain_extremes(step.shape, step.part, step.length, parts)
     times = [float(step.start + step.length * Fraction(i, parts)) for i in range(parts + 1)]
     for i in range(parts):
         row = {name: float(values[i]) for name, values in fields.items()}
-        yield Box(times[i], times[i + 1], gain_max=gains[i], slope_max=slopes[i], **row)
+        gain, slope_low, slope_high = shared[i]
+        yield Box(times[i], times[i + 1], gain_max=gain, slope_low=slope_low, slope_high=slope_high, **row)
 
 
 @lru_cache(maxsize=65536)
 def _gain_extremes(
     shape: poly.Coefficients, part: tuple[int, int], length: Fraction, parts: int
-) -> tuple[list[float], list[float]]:
-    """Greatest g and |g'| on the equal parts of a step, rounded up."""
+) -> tuple[tuple[float, float, float], ...]:
+    """Greatest g, least and greatest g' on the equal parts of a step, rounded outwards."""
     j, n = part
-    gains, slopes = [], []
+    found = []
     for i in range(parts):
         local = poly.compose_affine(shape, Fraction(j * parts + i, n * parts), Fraction(1, n * parts))
-        gains.append(fraction_above(max(abs(c) for c in poly.bernstein(local))))
-        slope = poly.scale(poly.derivative(local), parts / length)
-        slopes.append(fraction_above(max(abs(c) for c in poly.bernstein(slope))))
-    return gains, slopes
+        slope = poly.bernstein(poly.scale(poly.derivative(local), parts / length))
+        gain = fraction_above(max(poly.bernstein(local)))
+        found.append((gain, fraction_below(min(slope)), fraction_above(max(slope))))
+    return tuple(found)

@@ -1,0 +1,112 @@
+"""Claims about R_min, convergence and torque: PROVED with their numbers, else UNDECIDED with a reason."""
+
+from dataclasses import replace
+from fractions import Fraction as F
+
+import numpy as np
+import pytest
+from intermit.models.laws import QuaternionPD
+from intermit.models.schedule import Hermite, Window, build_schedule
+from intermit.models.simulation import filter_minimum, settling_time, simulate, torque_metrics
+from intermit.verify.convergence import envelope
+from intermit.verify.floor.certify import FloorOptions
+from intermit.verify.floor.study import FloorQuestion, answer
+from intermit.verify.floor.worst_found import Search
+from intermit.verify.verdict import Verdict
+from problems import ADAPTIVE, J1, PERSISTENCE, REST, TILTED, paper_schedule
+
+QUESTION = FloorQuestion(
+    law=PERSISTENCE,
+    body=J1,
+    schedule=paper_schedule(),
+    max_angle_deg=F(120),
+    max_weighted_rate=F("0.3"),
+    options=FloorOptions(max_bins=4),
+)
+
+
+def by_key(found):
+    return {claim.key: claim for claim in found.claims}
+
+
+@pytest.mark.parametrize("law", [PERSISTENCE, ADAPTIVE])
+def test_paper_scenario_is_proved_and_bounds_its_own_run(law):
+    found = answer(replace(QUESTION, law=law, torque_limit=F(1000)))
+    claims = by_key(found)
+    assert {c.verdict for c in claims.values()} == {Verdict.PROVED}
+    run = simulate(law, J1, QUESTION.schedule, quaternion=TILTED, rate=REST, horizon=F(56))
+    assert filter_minimum(run).value >= found.floor.value
+    assert torque_metrics(run).peak_euclidean.value <= found.torque.applied
+    assert torque_metrics(run).peak_commanded_euclidean.value <= found.torque.commanded
+    assert settling_time(run, attitude=0.01, rate=0.01) <= found.convergence.settling
+    t = np.linspace(0, 56, 561)
+    bounds, state = envelope(found.floor, t), run.state(t)
+    assert np.all(2 * np.arccos(np.clip(state[0], -1, 1)) <= bounds["angle"] + 1e-7)
+    assert np.all(np.linalg.norm(state[4:7], axis=0) <= bounds["rate"] + 1e-9)
+    assert np.all(run.controller_state("R", t) >= bounds["filter"])
+
+
+def test_a_torque_limit_below_the_bound_is_undecided_with_both_numbers():
+    claim = by_key(answer(replace(QUESTION, torque_limit=F(5), run_peak=12.05)))["torque.limit"]
+    assert claim.verdict is Verdict.UNDECIDED
+    assert "exceeds the limit" in claim.reason
+    assert "12.05 N m, exceeds it too" in claim.reason
+
+
+def test_all_four_answers_about_the_floor_are_labelled():
+    found = answer(replace(QUESTION, run_floor=(0.14947, 56.0), search=Search(samples=16, rounds=0)))
+    quantities = {q.name: q for q in by_key(found)["filter.floor"].quantities}
+    assert set(quantities) == {
+        "certified_floor", "converged_floor", "floor_along_run", "worst_floor_found",
+    }  # fmt: skip
+    assert quantities["certified_floor"].high <= quantities["worst_floor_found"].low
+    assert quantities["certified_floor"].high <= quantities["converged_floor"].low
+    assert [q.name for q in quantities.values() if q.rigorous] == ["certified_floor", "converged_floor"]
+
+
+def test_a_lambda_below_the_sharp_condition_still_converges():
+    """The condition on lambda is about V, not about the laws."""
+    slow = replace(PERSISTENCE, lambda_=F("0.25"))  # sharp condition for J1: 0.341
+    claim = by_key(answer(replace(QUESTION, law=slow)))["convergence"]
+    assert claim.verdict is Verdict.PROVED
+
+
+def test_finite_tables_bound_but_do_not_converge():
+    windows = [Window(F(8 * k), F(8 * k) + F("3.2")) for k in range(3)]
+    found = answer(replace(QUESTION, schedule=build_schedule(windows, Hermite())))
+    claims = by_key(found)
+    assert claims["filter.floor"].verdict is Verdict.PROVED
+    assert "on [0, " in claims["filter.floor"].statement
+    assert claims["convergence"].verdict is Verdict.UNDECIDED
+    assert "finite" in claims["convergence"].reason
+
+
+def test_a_set_too_wide_is_undecided_with_the_instant():
+    found = answer(replace(QUESTION, law=ADAPTIVE, max_angle_deg=F(300), max_weighted_rate=F(2)))
+    for claim in found.claims:
+        assert claim.verdict is Verdict.UNDECIDED
+        assert "reaches 2 pi at t = " in claim.reason
+        assert claim.next_step
+
+
+def test_a_law_outside_the_family_is_undecided():
+    found = answer(replace(QUESTION, law=QuaternionPD(proportional=F(1), derivative=F(1))))
+    for claim in found.claims:
+        assert claim.verdict is Verdict.UNDECIDED
+        assert "no comparison system" in claim.reason
+
+
+def test_rate_bounds_of_the_set_become_weighted_ones():
+    """|w| <= 0.1 with Jmax 3.113: |Omega|_J <= 0.1765 where the schedule starts closed."""
+    slow = replace(QUESTION, max_weighted_rate=None, max_rate=F("0.1"))
+    assert slow.initial.y_high == pytest.approx(0.1 * np.sqrt(J1.principal_inertias[-1]), rel=1e-9)
+    assert replace(slow, max_rate=None).initial.y_high == 0.0
+    both = replace(slow, max_weighted_rate=F("0.01"))
+    assert both.initial.y_high == pytest.approx(0.01)
+
+
+def test_an_inertia_tolerance_lowers_the_floor_or_leaves_it():
+    wide = tuple(tuple(F("0.05") for _ in range(3)) for _ in range(3))
+    exact, loose = answer(QUESTION), answer(replace(QUESTION, inertia_tolerance=wide))
+    assert loose.floor.value < exact.floor.value
+    assert by_key(loose)["filter.floor"].verdict is Verdict.PROVED

@@ -1,0 +1,294 @@
+"""Claims that rest on the certified floor: R_min, convergence, the torque limit.
+
+Each answer about R_min is labelled with what it guarantees: certified (every start of the set),
+converged (an upper bound of inf R of every run), along a run, worst found.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from math import degrees
+from typing import final
+
+from ..convergence import Convergence
+from ..verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict
+from .certify import Floor
+from .converged import ConvergedFloor
+from .torque_bound import TorqueBound
+from .worst_found import WorstFound
+
+PAGE = "docs/theory-floor.md"
+MUELLER = "comparison theorem of Mueller and Walter; docs/theory-floor.md"
+
+
+@final
+@dataclass(frozen=True, kw_only=True)
+class FloorFacts:
+    """Everything known about R_min of one law; what was not asked for is None.
+
+    Attributes
+    ----------
+    law_name : the law's name, for messages
+    floor : certified floor; None if the law has no comparison system
+    converged : for periodic schedules
+    along_run : least R of the scenario's own run, s, and its horizon, s
+    worst : least R found over the set
+    """
+
+    law_name: str
+    floor: Floor | None
+    converged: ConvergedFloor | None = None
+    along_run: tuple[float, float] | None = None
+    worst: WorstFound | None = None
+
+
+def floor_claim(facts: FloorFacts) -> Claim:
+    """Claim "filter.floor": R(t) >= R_min > 0 from every start of the set."""
+    title, floor = "R stays above a floor", facts.floor
+    quantities = _other_answers(facts)
+    if floor is None:
+        return _undecided(
+            "filter.floor",
+            title,
+            "R(t) >= R_min > 0",
+            _no_system(facts.law_name),
+            "use persistence-filter or adaptive-scaling, or give the law its own certificate",
+            quantities,
+        )
+    asked = "for all t >= 0" if floor.schedule.period is not None else "over the table"
+    if not reaches_far_enough(floor):
+        reason, step = _shortfall(floor)
+        statement = f"R(t) >= R_min > 0 {asked}, from every start with {floor.initial.description}"
+        return _undecided("filter.floor", title, statement, reason, step, quantities)
+    asked = "for all t >= 0" if floor.horizon is None else f"on [0, {_seconds(floor.horizon)}]"
+    certified = Quantity(
+        "certified_floor", floor.value, floor.value, "s", "R_min certified, every start of the set", True
+    )
+    return Claim(
+        key="filter.floor",
+        title=title,
+        statement=(
+            f"R(t) >= {_down(floor.value)} s {asked}, from every start with {floor.initial.description}"
+        ),
+        verdict=Verdict.PROVED,
+        evidence=(_certificate(floor), *_search_evidence(facts)),
+        quantities=(certified, *quantities),
+        source=MUELLER,
+    )
+
+
+def convergence_claim(facts: FloorFacts, found: Convergence | None, attitude: float, rate: float) -> Claim:
+    """Claim "convergence": error angle and rate go to zero within a proved envelope."""
+    title, floor = "attitude and rate converge", facts.floor
+    general = "error angle and rate go to zero from every start of the initial set"
+    if floor is None or found is None:
+        return _undecided(
+            "convergence",
+            title,
+            general,
+            _no_system(facts.law_name),
+            "use persistence-filter or adaptive-scaling, or give the law its own certificate",
+        )
+    quantities = _reach_quantities(floor, found)
+    if floor.schedule.period is None:
+        reason = "the table is finite: after its last window nothing acts, so no limit exists to speak of"
+        step = "give the schedule a period if it repeats; the proved bounds over the table stand"
+        return _undecided("convergence", title, general, reason, step, quantities)
+    if not found.converges:
+        reason, step = _shortfall(floor)
+        return _undecided("convergence", title, general, reason, step)
+    period = floor.schedule.period
+    statement = (
+        f"from every start with {floor.initial.description}, sqrt(1 - b0) and |Omega|_J shrink by a factor "
+        f"{_up(found.ratio)} every {float(period):g} s from t = {float(found.envelope_start):g} s on"
+    )
+    if found.settling is not None:
+        statement += (
+            f"; |bv| <= {attitude:g} and |w| <= {rate:g} rad/s for good after {_up(found.settling)} s"
+        )
+    cascade = Evidence(
+        EvidenceKind.THEOREM,
+        "any lambda > 0 suffices once inf R > 0: |Omega|_J decays as exp(-m/2) and the attitude follows, m "
+        "the integral of g^2 kappa (1 + b0)",
+        source=PAGE,
+    )
+    return Claim(
+        key="convergence",
+        title=title,
+        statement=statement,
+        verdict=Verdict.PROVED,
+        evidence=(_certificate(floor), cascade),
+        quantities=quantities,
+        source=PAGE,
+    )
+
+
+def torque_claim(
+    facts: FloorFacts,
+    bound: TorqueBound | None,
+    limit: Fraction,
+    norm: str,
+    seen: float | None = None,
+) -> Claim:
+    """Claim "torque.limit": the applied torque g u stays within the limit.
+
+    `seen` is the largest applied torque of a simulated run in that norm, N m, for the reason.
+    """
+    title = "applied torque within its limit"
+    floor = facts.floor
+    statement = f"|g u| <= {float(limit):g} N m ({norm})"
+    if floor is None or bound is None:
+        return _undecided(
+            "torque.limit", title, statement, _no_system(facts.law_name), "simulate; no bound is proved"
+        )
+    statement += f" from every start with {floor.initial.description}"
+    quantities = torque_quantities(bound)
+    if not reaches_far_enough(floor):
+        reason, step = _shortfall(floor)
+        return _undecided("torque.limit", title, statement, reason, step)
+    if Fraction(bound.applied) <= limit:
+        margin = Quantity(
+            "torque_reserve", float(limit) - bound.applied, float(limit) - bound.applied, "N m", "reserve"
+        )
+        return Claim(
+            key="torque.limit",
+            title=title,
+            statement=statement,
+            verdict=Verdict.PROVED,
+            evidence=(_certificate(floor),),
+            quantities=quantities,
+            margins=(margin,),
+            source=PAGE,
+        )
+    reason = f"the certified bound {_up(bound.applied)} N m, 3 to 15 times too cautious, exceeds the limit"
+    if seen is not None:
+        word = "exceeds it too" if seen > limit else "does not"
+        reason += f"; the largest torque of the simulated run, {seen:.4g} N m, {word}"
+    step = "narrow the initial set, lower the gains (lambda, gamma, k0), or raise the limit"
+    return _undecided("torque.limit", title, statement, reason, step, quantities)
+
+
+def torque_quantities(bound: TorqueBound) -> tuple[Quantity, ...]:
+    """Torque bounds as quantities."""
+    return (
+        Quantity(
+            "torque_bound_applied", 0.0, bound.applied, "N m", "applied torque g u, Euclidean, at most", True
+        ),
+        Quantity(
+            "torque_bound_commanded", 0.0, bound.commanded, "N m", "command u, Euclidean, at most", True
+        ),
+        Quantity("gain_bound", 0.0, bound.gain, "1/s", "gain kappa at most", True),
+    )
+
+
+def reaches_far_enough(floor: Floor) -> bool:
+    """Whether the certificate covers all that can be asked: all time, or the whole finite table."""
+    return floor.horizon is None or (floor.stuck is None and floor.schedule.period is None)
+
+
+def _other_answers(facts: FloorFacts) -> tuple[Quantity, ...]:
+    found = []
+    if facts.converged is not None:
+        c = facts.converged
+        label = "R_min converged, no run stays above it"
+        found.append(Quantity("converged_floor", c.low, c.high, "s", label, True))
+    if facts.along_run is not None:
+        value, end = facts.along_run
+        label = f"R_min along the simulated run to {end:g} s"
+        found.append(Quantity.point("floor_along_run", value, "s", digits=7, label=label))
+    if facts.worst is not None:
+        label = f"R_min worst found in {facts.worst.runs} runs"
+        found.append(Quantity.point("worst_floor_found", facts.worst.value, "s", digits=7, label=label))
+    return tuple(found)
+
+
+def _reach_quantities(floor: Floor, found: Convergence) -> tuple[Quantity, ...]:
+    if floor.stuck is not None:
+        return ()
+    angle = degrees(found.largest_angle) * (1 + 1e-14)
+    items = [
+        Quantity("largest_angle", 0.0, angle, "deg", "error angle 2 acos(b0) at most", True),
+        Quantity("largest_rate", 0.0, found.largest_rate, "rad/s", "rate |w| at most", True),
+    ]
+    if found.settling is not None:
+        items.append(Quantity("settling_bound", 0.0, found.settling, "s", "settled at the latest", True))
+    return tuple(items)
+
+
+def _certificate(floor: Floor) -> Evidence:
+    summary = (
+        f"{len(floor.witnesses)} polynomial sub- and supersolutions, {floor.steps} steps, every differential "
+        "inequality proved by Bernstein coefficients in exact rationals"
+    )
+    return Evidence(EvidenceKind.CERTIFICATE, summary, source=MUELLER, details={"steps": floor.steps})
+
+
+def _search_evidence(facts: FloorFacts) -> tuple[Evidence, ...]:
+    if facts.worst is None or facts.floor is None:
+        return ()
+    gap = facts.worst.value / facts.floor.value - 1
+    summary = (
+        f"search of {facts.worst.runs} runs: the certified floor is at most {100 * gap:.2g} per cent too low"
+    )
+    start = {"quaternion": list(facts.worst.quaternion), "rate": list(facts.worst.rate)}
+    return (Evidence(EvidenceKind.SAMPLES, summary, details=start),)
+
+
+def _shortfall(floor: Floor) -> tuple[str, str]:
+    if floor.stuck is not None:
+        return (
+            f"the certified bound of the error angle reaches 2 pi at t = {float(floor.stuck):.4g} s: beyond "
+            "it nothing can be certified",
+            "narrow the initial set (smaller error angle or rate), or shorten the first off-time",
+        )
+    end = float(floor.horizon) if floor.horizon is not None else 0.0
+    return (
+        f"R >= {_down(floor.value)} s is certified on [0, {end:g}] s only: no repeating bound was found",
+        "allow more periods, or narrow the initial set",
+    )
+
+
+def _no_system(law_name: str) -> str:
+    return f"no comparison system is known for the law {law_name}"
+
+
+def _undecided(
+    key: str,
+    title: str,
+    statement: str,
+    reason: str,
+    next_step: str,
+    quantities: tuple[Quantity, ...] = (),
+) -> Claim:
+    return Claim(
+        key=key,
+        title=title,
+        statement=statement,
+        verdict=Verdict.UNDECIDED,
+        quantities=quantities,
+        reason=reason,
+        next_step=next_step,
+        source=PAGE,
+    )
+
+
+def _seconds(value: Fraction) -> str:
+    return f"{float(value):.9g} s"
+
+
+def _down(value: float) -> str:
+    """Five digits, never above the value."""
+    return _shown(value, -1)
+
+
+def _up(value: float) -> str:
+    """Five digits, never below the value."""
+    return _shown(value, 1)
+
+
+def _shown(value: float, direction: int) -> str:
+    from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
+
+    rounding = ROUND_CEILING if direction > 0 else ROUND_FLOOR
+    return f"{Context(prec=5, rounding=rounding).create_decimal(Decimal(value)):f}"
