@@ -33,7 +33,7 @@ def one_line(text: str) -> str:
 
 def quote(value: object) -> str:
     """Return a user's own value as it is repeated in a message: one line, not endless."""
-    text = value if isinstance(value, str) else str(value)
+    text = value if isinstance(value, str) else str(value).lower() if isinstance(value, bool) else str(value)
     shown = one_line(text)
     if len(shown) > LONGEST_QUOTE:
         shown = shown[: LONGEST_QUOTE - 3] + "..."

@@ -21,8 +21,7 @@ class CheckTable(Table):
     `claims`: keys whose verdicts decide the exit code (default: schedule facts, R_min > 0,
     convergence, and the torque limit if one is given). `samples`: states drawn for the derivative
     bound. `rate`, rad/s, and `gain`, 1/s: half-width and largest gain of the sampled domain.
-    `pe_window`: length T of the excitation window, s (default: one period, or the least whole number
-    of longest gaps that exceeds the longest zero run).
+    `pe_window`: length T of the excitation window, s (default: longest zero run plus longest run of thrust).
     """
 
     claims: tuple[Text, ...] | None = None
@@ -36,10 +35,10 @@ class CheckTable(Table):
 class OptimumTable(Table):
     """[optimum]: the minimum-peak problem through the windows.
 
-    `final_time`, s (default: the settling time asked for, else the horizon). `norm` of the torque.
+    `final_time`, s (default: the horizon). `norm` of the torque.
     `profile`: the thrust available is "window" (full inside each window) or "gain" (g).
     `attitude_tolerance`, `rate_tolerance`: largest |bv| and |w| (rad/s) at the end; both 0 is exact rest.
-    `thrusters`: columns of torque per unit force, N m/N, of one-sided thrusters (replaces the norm).
+    `thrusters`: columns of torque per unit force, m, of one-sided thrusters (replaces the norm).
     `torque_limit`, N m: for minimum impulse and time, and for explaining why a problem is hopeless.
     """
 

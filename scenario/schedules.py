@@ -15,7 +15,7 @@ from .document import Document
 from .errors import ScenarioError
 from .schema import ScheduleTable
 
-LARGEST_COUNT = 1_000_000
+LARGEST_COUNT = 200_000
 """Windows that `count` may ask for."""
 Locate = Callable[[int], str]
 """From the position of a window (from 0) to the words by which messages name it."""

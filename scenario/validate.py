@@ -29,7 +29,7 @@ def validate(document: Document) -> ScenarioFile:
         location = tuple(part for part in first["loc"] if not _is_tag(part))
         key = key_text(location)
         more = len({p["loc"][: len(first["loc"])] for p in problems}) - 1
-        suffix = f" (and {more} more such line{'s' if more > 1 else ''})" if more else ""
+        suffix = f" (and {more} more problem{'s' if more > 1 else ''})" if more else ""
         raise ScenarioError(document.where(key), _sentence(dict(first), location) + suffix) from None
 
 
@@ -82,7 +82,7 @@ def _suggestion(location: tuple[int | str, ...]) -> str:
         field = next((f for n, f in model.model_fields.items() if (f.alias or n) == part), None)
         if field is None:
             return ""
-        model = _table_of(field.annotation)
+        model = table_of(field.annotation)
         if model is None:
             return ""
     known = [field.alias or name for name, field in model.model_fields.items()]
@@ -90,11 +90,12 @@ def _suggestion(location: tuple[int | str, ...]) -> str:
     return f" (did you mean '{near[0]}'?)" if near else f" (known: {', '.join(known)})"
 
 
-def _table_of(annotation: Any) -> type[Table] | None:
+def table_of(annotation: Any) -> type[Table] | None:
+    """Return the table that a field holds, alone or in a list, if it holds one."""
     if isinstance(annotation, type) and issubclass(annotation, Table):
         return annotation
     for inner in getattr(annotation, "__args__", ()):
-        found = _table_of(inner)
+        found = table_of(inner)
         if found is not None:
             return found
     return None

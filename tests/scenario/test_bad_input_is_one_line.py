@@ -147,7 +147,7 @@ BAD_TABLES = {
     ),
     "true where a number belongs": (
         {"law": 'type = "persistence-filter"\nlambda = true\nR0 = 1'},
-        "scenario.toml: law[1].lambda: expected a number, received True",
+        "scenario.toml: law[1].lambda: expected a number, received true",
     ),
     "an unknown key": (
         {"spacecraft": INERTIA.format(3, 3, 2) + "\ninertai = 3"},
@@ -263,7 +263,7 @@ def test_scenario_file_that_is_no_scenario(tmp_path):
     assert complaint(pipe) == "pipe.toml: is not a regular file"
     empty = tmp_path / "empty.toml"
     empty.write_text("")
-    assert complaint(empty) == "empty.toml: spacecraft: required, but missing (and 1 more such line)"
+    assert complaint(empty) == "empty.toml: spacecraft: required, but missing (and 1 more problem)"
 
 
 AT_REST = ": g must be C1 with no thrust before and after the record"
