@@ -1,6 +1,7 @@
 """The file a user writes: read, checked and built into objects of `models`."""
 
 from .errors import ScenarioError
+from .extra_law import law_from_words, with_laws
 from .initial import InitialSet, InitialState
 from .laws import LawChoice
 from .scenario import Scenario, load_scenario
@@ -16,7 +17,9 @@ __all__ = [
     "ScenarioError",
     "ScheduleChoice",
     "example_files",
+    "law_from_words",
     "load_scenario",
+    "with_laws",
     "write_examples",
     "write_template",
 ]

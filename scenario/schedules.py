@@ -68,7 +68,7 @@ def build(table: ScheduleTable, document: Document) -> ScheduleChoice:
     _refuse_stray_keys(table, given[0], document)
     if table.thrust is not None:
         schedule = thrust.build(table, table.thrust, document)
-        return ScheduleChoice(schedule, "measured", f"thrust samples {Path(table.thrust.csv).name}")
+        return ScheduleChoice(schedule, "measured", thrust.described(table.thrust))
     windows, locate, source = _windows(table, document)
     period = table.period if table.count is None else None
     _check_order(windows, period, locate)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from pathlib import Path
 
 from ..models.schedule import Schedule
 from ..models.schedule.measured import measured_schedule, normalised
@@ -55,3 +56,10 @@ def build(table: ScheduleTable, thrust: ThrustTable, document: Document) -> Sche
         raise
     except ValueError as error:
         raise ScenarioError(f"{key}: {path.name}", str(error)) from None
+
+
+def described(thrust: ThrustTable) -> str:
+    """Return the record, its normalisation and its threshold in words."""
+    full = "the largest sample" if thrust.full_thrust is None else f"{float(thrust.full_thrust):g}"
+    below = f"{float(thrust.zero_below):g}"
+    return f"thrust samples {Path(thrust.csv).name}: g = thrust / {full}, 0 where that is below {below}"

@@ -7,7 +7,9 @@ import pytest
 from intermit.scenario import (
     TEMPLATE,
     ScenarioError,
+    law_from_words,
     load_scenario,
+    with_laws,
     write_examples,
     write_template,
 )
@@ -168,6 +170,37 @@ def test_user_law_that_cannot_be_run(workshop, source, message):
         choice.build()
     assert str(caught.value).startswith(f"scenario.toml: law[1].file: {message}")
     assert "\n" not in str(caught.value)
+
+
+def test_a_law_named_on_the_command_line_joins_the_others(workshop):
+    (workshop.folder / "mine.py").write_text(USER_LAW)
+    scenario = workshop.load()
+    choice = law_from_words(f"{workshop.folder}/mine.py:Mine, stiffness=0.1,label=soft")
+    more = with_laws(scenario, choice)
+    assert [law.label for law in more.laws] == ["persistence-filter", "soft"]
+    assert more.laws[1].build().parameters == {"stiffness": Fraction(1, 10)}
+    assert more.sha256 != scenario.sha256
+    other = with_laws(scenario, law_from_words(f"{workshop.folder}/mine.py:Mine,stiffness=0.2,label=soft"))
+    assert other.sha256 != more.sha256
+    with pytest.raises(ScenarioError, match="is taken"):
+        with_laws(more, choice)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ("mine.py", "law 'mine.py': expected FILE:CLASS, or FILE:CLASS,name=value,..."),
+        (":Mine", "law ':Mine': expected FILE:CLASS, or FILE:CLASS,name=value,..."),
+        ("mine.py:a b", "law 'mine.py:a b': expected FILE:CLASS, or FILE:CLASS,name=value,..."),
+        ("mine.py:Mine,k", "law 'mine.py:Mine,k': expected name=value, received 'k'"),
+        ("mine.py:Mine,k=x", "law 'mine.py:Mine,k=x': k: expected a number, received 'x'"),
+        ("mine.py:Mine,k=nan", "law 'mine.py:Mine,k=nan': k: expected a finite number, received 'nan'"),
+    ],
+)
+def test_words_that_name_no_law(words, message):
+    with pytest.raises(ScenarioError) as caught:
+        law_from_words(words)
+    assert str(caught.value) == message
 
 
 def test_labels_are_unique(workshop):
