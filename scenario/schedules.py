@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from pathlib import Path
 from typing import final
 
 from ..models.schedule import Hermite, Ramps, Schedule, Shape, Window, build_schedule
