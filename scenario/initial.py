@@ -10,6 +10,7 @@ from typing import final
 import numpy as np
 from numpy.typing import NDArray
 
+from ..models.rigid_body import RigidBody
 from .document import Document
 from .errors import ScenarioError
 from .schema import AttitudeTable, InitialSetTable, InitialTable, ScenarioFile
@@ -72,13 +73,16 @@ class InitialSet:
     from_state: bool = False
 
 
-def build(file: ScenarioFile, document: Document) -> tuple[InitialState, InitialSet]:
+def build(
+    file: ScenarioFile, document: Document, body: RigidBody, *, starts_in_window: bool
+) -> tuple[InitialState, InitialSet]:
     """Return the initial state and set; each is derived from the other where only one is given.
 
     Raises
     ------
     ScenarioError
-        If neither is given, a quaternion is not unit, or an axis is zero or lacks its angle.
+        If neither is given, a quaternion is not unit, an axis is zero or lacks its angle, or the
+        state lies outside the set.
     """
     target = attitude(file.target, document, "target")
     if file.initial is None and file.initial_set is None:
@@ -92,7 +96,7 @@ def build(file: ScenarioFile, document: Document) -> tuple[InitialState, Initial
         table = file.initial_set
         bounds = InitialSet(table.max_angle_deg, table.max_rate, table.max_weighted_rate)
         if file.initial is not None:
-            _check_inside(state, bounds, document)
+            _check_inside(state, bounds, document, body, starts_in_window=starts_in_window)
     else:
         bounds = _around(state)
     return state, bounds
@@ -159,7 +163,10 @@ def _around(state: InitialState) -> InitialSet:
     return InitialSet(angle, rate, None, from_state=True)
 
 
-def _check_inside(state: InitialState, bounds: InitialSet, document: Document) -> None:
+def _check_inside(
+    state: InitialState, bounds: InitialSet, document: Document, body: RigidBody, *, starts_in_window: bool
+) -> None:
+    """Refuse a state outside its set; within a window the weighted rate depends on the law: not checked."""
     allowance = float(ANGLE_ALLOWANCE)
     if state.angle_deg > float(bounds.max_angle_deg) + allowance:
         raise ScenarioError(
@@ -167,10 +174,26 @@ def _check_inside(state: InitialState, bounds: InitialSet, document: Document) -
             f"the initial state's error angle, {state.angle_deg:.6g} deg, lies outside "
             f"{float(bounds.max_angle_deg):g} deg",
         )
-    square = sum((x * x for x in state.exact_rate), Fraction(0))
+    rate = state.exact_rate
+    square = sum((x * x for x in rate), Fraction(0))
+    if bounds.max_rate is None and bounds.max_weighted_rate is None and square > 0:
+        raise ScenarioError(
+            document.where("initial_set.max_rate"),
+            "required (or max_weighted_rate) since the initial state turns, but missing",
+        )
     if bounds.max_rate is not None and square > bounds.max_rate**2:
         raise ScenarioError(
             document.where("initial_set.max_rate"),
             f"the initial state's rate, {math.sqrt(square):.6g} rad/s, lies outside "
             f"{float(bounds.max_rate):g} rad/s",
+        )
+    if bounds.max_weighted_rate is None or starts_in_window:
+        return
+    J = body.exact_inertia
+    weighted = sum((rate[i] * J[i][j] * rate[j] for i in range(3) for j in range(3)), Fraction(0))
+    if weighted > bounds.max_weighted_rate**2:
+        raise ScenarioError(
+            document.where("initial_set.max_weighted_rate"),
+            f"the initial state's sqrt(w' J w), {math.sqrt(weighted):.6g} sqrt(kg m^2)/s, lies outside "
+            f"{float(bounds.max_weighted_rate):g}",
         )

@@ -116,7 +116,9 @@ def build_scenario(file: ScenarioFile, document: Document) -> Scenario:
     """Build a scenario from its typed file."""
     body, tolerance, warnings = spacecraft.build(file.spacecraft, document)
     schedule_choice = schedules.build(file.schedule, document)
-    state, bounds = initial.build(file, document)
+    at_once = schedule_choice.schedule.profile.shapes[0]
+    starts_in_window = bool(at_once and at_once[0])
+    state, bounds = initial.build(file, document, body, starts_in_window=starts_in_window)
     choices = laws.build(file, document)
     if bounds.max_angle_deg > 180 + initial.ANGLE_ALLOWANCE:
         warnings += (

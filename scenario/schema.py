@@ -11,7 +11,7 @@ from typing import Any, Literal
 
 from pydantic import Field, StrictBool, field_validator
 
-from .exact import Count, Exact, Matrix, NotNegative, Positive, Text, Vector
+from .exact import Count, Exact, Matrix, NotNegative, Positive, Text, Vector, exact
 from .questions import CheckTable, CompareTable, OptimumTable, StudyTable, TuneTable
 from .table import Table
 
@@ -25,6 +25,11 @@ class SpacecraftTable(Table):
     name: Text = ""
     inertia: Matrix
     inertia_tolerance: Any = None
+
+    @field_validator("inertia_tolerance")
+    @classmethod
+    def _exact_tolerance(cls, value: Any) -> Any:
+        return [cls._exact_tolerance(x) for x in value] if isinstance(value, list) else exact(value)
 
 
 class ThrustTable(Table):

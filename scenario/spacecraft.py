@@ -9,8 +9,7 @@ import numpy as np
 
 from ..models.rigid_body import ExactMatrix, RigidBody
 from .document import Document
-from .errors import ScenarioError, quote
-from .exact import exact
+from .errors import ScenarioError
 from .schema import SpacecraftTable
 
 
@@ -44,14 +43,10 @@ def build(
 def _tolerance(value: Any, document: Document) -> ExactMatrix:
     key = document.where("spacecraft.inertia_tolerance")
     rows = value if isinstance(value, list) else [[value] * 3] * 3
-    if len(rows) != 3 or any(not isinstance(row, list) or len(row) != 3 for row in rows):
-        raise ScenarioError(key, f"expected a number or three rows of three numbers, received {quote(value)}")
-    numbers: list[list[Fraction]] = []
-    for row in rows:
-        try:
-            numbers.append([exact(x) for x in row])
-        except ValueError as error:
-            raise ScenarioError(key, str(error)) from None
+    shaped = len(rows) == 3 and all(isinstance(row, list) and len(row) == 3 for row in rows)
+    if not shaped or not all(isinstance(x, Fraction) for row in rows for x in row):
+        raise ScenarioError(key, "expected a number or three rows of three numbers")
+    numbers: list[list[Fraction]] = rows
     for i in range(3):
         for j in range(3):
             if numbers[i][j] < 0:

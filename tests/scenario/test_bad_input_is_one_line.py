@@ -109,6 +109,22 @@ BAD_TABLES = {
         "scenario.toml: initial_set.max_angle_deg: "
         "the initial state's error angle, 120 deg, lies outside 90 deg",
     ),
+    "a turning start in a set at rest": (
+        {
+            "initial_set": "max_angle_deg = 120",
+            "initial": "axis = [1, 1, 1]\nangle_deg = 120\nrate = [0, 0.1, 0]",
+        },
+        "scenario.toml: initial_set.max_rate: required (or max_weighted_rate) since the initial state turns, "
+        "but missing",
+    ),
+    "a start that turns too fast for its set": (
+        {
+            "initial_set": "max_angle_deg = 120\nmax_weighted_rate = 0.1",
+            "initial": "axis = [1, 1, 1]\nangle_deg = 120\nrate = [0, 0.1, 0]",
+        },
+        "scenario.toml: initial_set.max_weighted_rate: the initial state's sqrt(w' J w), "
+        "0.163095 sqrt(kg m^2)/s, lies outside 0.1",
+    ),
     "negative lambda": (
         {"law": 'type = "persistence-filter"\nlambda = -0.5\nR0 = 1'},
         "scenario.toml: law[1].lambda: must be > 0, received -0.5",

@@ -119,6 +119,16 @@ def test_hash_follows_the_meaning(workshop):
     assert workshop.load(schedule='csv = "w.csv"').sha256 != first
 
 
+def test_inertia_tolerance_is_exact_and_spread(workshop):
+    J = "inertia = [[3, 0, 0], [0, 3, 0], [0, 0, 2]]"
+    one = workshop.load(spacecraft=f"{J}\ninertia_tolerance = 0.10")
+    assert one.inertia_tolerance == ((Fraction(1, 10),) * 3,) * 3
+    same = workshop.load(spacecraft=f"{J}\ninertia_tolerance = 0.1")
+    assert one.sha256 == same.sha256
+    rows = workshop.load(spacecraft=f"{J}\ninertia_tolerance = [[0.1, 0, 0], [0, 0.2, 0], [0, 0, 0.3]]")
+    assert rows.inertia_tolerance[1][1] == Fraction(1, 5)
+
+
 USER_LAW = '''
 from dataclasses import dataclass
 from fractions import Fraction
