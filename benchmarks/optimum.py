@@ -28,12 +28,22 @@ import clarabel  # noqa: F401  imports are not part of the times
 import numpy as np
 import scipy.integrate
 import scipy.sparse  # noqa: F401
-
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import Hermite, Window, build_schedule
 from intermit.optim.norms import Euclidean, LargestComponent, Norm
-from intermit.optim.peak import NonlinearProgram, SequentialConvex, TorqueHistory, fly_again, guess, mesh
-from intermit.optim.peak import curvature, nlp, propagate, scaling, shooting
+from intermit.optim.peak import (
+    NonlinearProgram,
+    SequentialConvex,
+    TorqueHistory,
+    curvature,
+    fly_again,
+    guess,
+    mesh,
+    nlp,
+    propagate,
+    scaling,
+    shooting,
+)
 from intermit.optim.problem import TransferProblem
 
 CELLS = 10
@@ -51,9 +61,7 @@ def problem(norm: Norm) -> TransferProblem:
     window = Window(Fraction("0.01"), Fraction("3.21"))
     schedule = build_schedule([window], Hermite(overrun=Fraction("0.01")), period=Fraction(8))
     body = RigidBody.from_rows(INERTIA)
-    return TransferProblem.through(
-        schedule, body=body, horizon="51.22", attitude=(1, 1, 1, 1), norm=norm
-    )
+    return TransferProblem.through(schedule, body=body, horizon="51.22", attitude=(1, 1, 1, 1), norm=norm)
 
 
 def forget() -> None:

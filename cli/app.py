@@ -17,6 +17,7 @@ COMMANDS = (
     "init",
     "check",
     "explain",
+    "optimum",
 )
 """Modules of this room that are commands, in the order of the help page; `_` is spelled `-`."""
 

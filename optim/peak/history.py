@@ -60,8 +60,16 @@ class TorqueHistory:
 
     def torque(self, t: ArrayLike) -> Array:
         """Torque at times t (...,) in s, (..., 3), N m; at an edge that of the cell after it."""
-        times = np.asarray(t, dtype=float)
-        cell = np.clip(np.searchsorted(self.edges, times, side="right") - 1, 0, len(self.control) - 1)
-        s = (times - self.edges[cell]) / np.diff(self.edges)[cell]
-        w = (self.profile[cell] * s[..., None] ** np.arange(self.profile.shape[1])).sum(axis=-1)
-        return np.asarray(w[..., None] * self.base_torque[cell])
+        return np.asarray(self.window(t)[..., None] * self.base_torque[self._cell(t)])
+
+    def window(self, t: ArrayLike) -> Array:
+        """W at times t (...,) in s, (...,); at an edge that of the cell after it."""
+        cell = self._cell(t)
+        s = (np.asarray(t, dtype=float) - self.edges[cell]) / np.diff(self.edges)[cell]
+        return np.asarray(
+            (self.profile[cell] * s[..., None] ** np.arange(self.profile.shape[1])).sum(axis=-1)
+        )
+
+    def _cell(self, t: ArrayLike) -> NDArray[np.int64]:
+        found = np.searchsorted(self.edges, np.asarray(t, dtype=float), side="right") - 1
+        return np.asarray(np.clip(found, 0, len(self.control) - 1))

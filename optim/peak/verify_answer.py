@@ -74,7 +74,7 @@ class FlownHistory:
 def fly_again(problem: TransferProblem, history: TorqueHistory) -> FlownHistory:
     """Integrate a torque history independently and measure what it leaves."""
     pieces = _piece_of_cells(problem, history)
-    states, evaluations = _integrate(problem, history, pieces)
+    states, evaluations, _ = _integrate(problem, history, pieces)
     end = states[-1]
     angle = 2.0 * math.atan2(float(np.linalg.norm(end[1:4])), abs(float(end[0])))
     rate = float(np.linalg.norm(end[4:]))
@@ -94,6 +94,22 @@ def fly_again(problem: TransferProblem, history: TorqueHistory) -> FlownHistory:
     )
 
 
+def sample_flight(
+    problem: TransferProblem, history: TorqueHistory, points: int = 1200
+) -> tuple[Array, Array]:
+    """States on a grid of about `points` instants, for plots: times (n,), s, and states (n, 7).
+
+    Every cell has its two ends, just inside, and its share of the points by its length.
+    """
+    pieces = _piece_of_cells(problem, history)
+    lengths = np.diff(history.edges)
+    counts = np.maximum(3, np.ceil(points * lengths / lengths.sum())).astype(int)
+    inner = [np.clip(np.linspace(0.0, 1.0, n), 1e-9, 1.0 - 1e-9) for n in counts]
+    grids = [a + h * s for a, h, s in zip(history.edges, lengths, inner, strict=False)]
+    _, _, states = _integrate(problem, history, pieces, grids)
+    return np.concatenate(grids), states
+
+
 def _piece_of_cells(problem: TransferProblem, history: TorqueHistory) -> list[Piece]:
     """Piece of the problem's own window profile in which each cell lies."""
     pieces = list(problem.window.pieces)
@@ -102,12 +118,18 @@ def _piece_of_cells(problem: TransferProblem, history: TorqueHistory) -> list[Pi
     return [pieces[i] for i in np.searchsorted(ends, middle)]
 
 
-def _integrate(problem: TransferProblem, history: TorqueHistory, pieces: list[Piece]) -> tuple[Array, int]:
+def _integrate(
+    problem: TransferProblem,
+    history: TorqueHistory,
+    pieces: list[Piece],
+    grids: list[Array] | None = None,
+) -> tuple[Array, int, Array]:
+    """States at the edges, right-hand sides evaluated, and states at the instants of the grids."""
     from scipy.integrate import solve_ivp
 
     keep, (state, torque, out, run) = _rate_function(problem)
     states = [np.r_[problem.unit_attitude, problem.start_rate]]
-    evaluations = 0
+    evaluations, sampled = 0, [np.zeros((0, 7))]
     for k, base in enumerate(history.base_torque):
         window = _window_function(pieces[k])
 
@@ -118,11 +140,14 @@ def _integrate(problem: TransferProblem, history: TorqueHistory, pieces: list[Pi
             return out.copy()
 
         span = (float(history.edges[k]), float(history.edges[k + 1]))
-        part = solve_ivp(field, span, states[-1], method="DOP853", rtol=1e-12, atol=1e-14)
+        dense = grids is not None
+        part = solve_ivp(field, span, states[-1], method="DOP853", rtol=1e-12, atol=1e-14, dense_output=dense)
         states.append(part.y[:, -1])
         evaluations += int(part.nfev)
+        if grids is not None:
+            sampled.append(part.sol(grids[k]).T)
     del keep
-    return np.array(states), evaluations
+    return np.array(states), evaluations, np.concatenate(sampled)
 
 
 def _window_function(piece: Piece) -> Callable[[float], float]:

@@ -1,0 +1,55 @@
+"""`intermit optimum`."""
+
+from __future__ import annotations
+
+from time import perf_counter
+from typing import Annotated, Literal, get_args
+
+import typer
+
+from .options import Debug, InputError, JsonFile, ScenarioFile
+
+
+def run(
+    scenario: ScenarioFile,
+    json: JsonFile = None,
+    norm: Annotated[
+        list[str] | None,
+        typer.Option("--norm", help="component, euclidean or thrusters; repeat for several (default: both)."),
+    ] = None,
+    starts: Annotated[
+        int | None, typer.Option("--starts", min=1, help="Starts for each quaternion sign of the target.")
+    ] = None,
+    seed: Annotated[int | None, typer.Option("--seed", min=0, help="Seed of the first random start.")] = None,
+    solver: Annotated[
+        Literal["auto", "fast", "reference"],
+        typer.Option("--solver", help="fast: convex programs; reference: nonlinear program (IPOPT)."),
+    ] = "auto",
+    debug: Debug = False,
+) -> int:
+    """Find the least peak torque any controller could do with through the windows."""
+    del debug
+    from ..scenario import load_scenario
+    from ..study.optimum import NormKey, OptimumOptions, run_optimum
+    from .console import note, output, progress
+    from .optimum_page import print_optimum
+
+    began = perf_counter()
+    loaded = load_scenario(scenario)
+    for warning in loaded.warnings:
+        note(f"warning: {warning}")
+    norms = tuple(key for key in get_args(NormKey) if key in (norm or ()))
+    for key in norm or ():
+        if key not in norms:
+            raise InputError(f"--norm {key}: expected component, euclidean or thrusters")
+    options = OptimumOptions(norms=norms, starts=starts, seed=seed, solver=solver)
+    with progress(loaded.name) as step:
+        study = run_optimum(loaded, options, step)
+    print_optimum(output(), study)
+    if json is not None:
+        from ..reports.record import write_record_to
+        from ..study.optimum_record import optimum_record
+
+        write_record_to(optimum_record(study), json)
+    note(f"{perf_counter() - began:.1f} s")
+    return study.exit_code

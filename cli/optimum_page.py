@@ -1,0 +1,94 @@
+"""What `intermit optimum` prints: the least peaks, how they were checked, where the torque switches."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ..optim.peak import Standing
+from ..reports.numbers import write
+from ..study.optimum_record import residuals, terminal_words
+from .claim_tables import plain_table
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from ..study.optimum import Optimum, OptimumStudy
+
+STYLES = {Standing.CHECKED: "bold green", Standing.IMPOSSIBLE: "bold red", Standing.UNDECIDED: "bold yellow"}
+MOST_SWITCHES = 12
+"""Switch times printed; the record holds them all."""
+
+
+def print_optimum(console: Console, study: OptimumStudy) -> None:
+    """Print every least peak of a study."""
+    scenario = study.scenario
+    first = study.optima[0].problem
+    console.print(f"{scenario.name} ({scenario.path.name})", style="bold")
+    console.print(study.sentence)
+    gain = scenario.optimum.profile == "gain"
+    console.print(
+        f"From {scenario.initial.angle_deg:.6g} deg to {terminal_words(study.optima[0])} at tf = "
+        f"{float(first.horizon):g} s, "
+        + ("torque up to p g(t)." if gain else "full torque inside the windows.")
+    )
+    console.print()
+    table = plain_table("Least peak", "found", "standing", "local optima", "cells", "impulse")
+    for optimum in study.optima:
+        answer, unit = optimum.answer, optimum.problem.norm.unit
+        found = answer.history is not None
+        table.add_row(
+            optimum.problem.norm.name,
+            f"{answer.peak:.7g} {unit}" if found else "-",
+            _styled(answer.standing),
+            _optima(optimum),
+            str(answer.cells) if found else "-",
+            f"{answer.impulse:.6g} {unit} s" if found else "-",
+        )
+    console.print(table)
+    for optimum in study.optima:
+        _details(console, optimum)
+
+
+def _styled(standing: Standing) -> str:
+    from rich.text import Text
+
+    return Text(standing.value, style=STYLES[standing])  # type: ignore[return-value]
+
+
+def _optima(optimum: Optimum) -> str:
+    """Count of distinct local optima among the starts, and their spread."""
+    search = optimum.answer.search
+    found = search.local_optima
+    if not found:
+        return "-"
+    if len(found) == 1:
+        return f"1 from {len(search.starts)} starts"
+    return f"{len(found)} from {len(search.starts)} starts, worst +{100 * search.spread:.3g} %"
+
+
+def _details(console: Console, optimum: Optimum) -> None:
+    """Reasons, limit, residuals and switch times of one least peak."""
+    answer = optimum.answer
+    console.print()
+    console.print(optimum.problem.norm.name.capitalize(), style="bold")
+    if answer.reason:
+        console.print(f"  {answer.standing.value}: {answer.reason}")
+        console.print(f"  next step: {answer.next_step}")
+    if optimum.hopeless is not None and optimum.hopeless.reason != answer.reason:
+        console.print(f"  limit: {optimum.hopeless.reason}")
+        console.print(f"  next step: {optimum.hopeless.next_step}")
+    elif optimum.within_limit is not None:
+        unit = optimum.problem.norm.unit
+        word = "is enough" if optimum.within_limit else "was not met by any transfer found"
+        console.print(f"  limit {optimum.limit:g} {unit} {word}")
+    for quantity in residuals(optimum):
+        console.print(f"  {quantity['label']}: {write(quantity, most=2).ascii}")
+    if answer.switching is not None and answer.switching.switch_times:
+        times = answer.switching.switch_times
+        shown = ", ".join(_switch(t, j) for t, j in times[:MOST_SWITCHES])
+        more = f", and {len(times) - MOST_SWITCHES} more" if len(times) > MOST_SWITCHES else ""
+        console.print(f"  switches: {shown}{more}")
+
+
+def _switch(time: float, component: int) -> str:
+    return f"{time:.4f} s" if component < 0 else f"{time:.4f} s (control {component + 1})"

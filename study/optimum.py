@@ -1,0 +1,205 @@
+"""The optimum job: the least peak torque through a scenario's windows, in each norm asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING, Literal, final
+
+from ..optim.norms import Euclidean, LargestComponent, Norm, ThrusterAxes
+from ..optim.problem import Terminal, TransferProblem, WindowProfile
+from ..scenario import Scenario
+
+if TYPE_CHECKING:
+    from ..optim.peak import PeakAnswer
+    from ..optim.peak.explain import Explanation
+    from ..optim.peak.options import LocalSolver
+
+Progress = Callable[[str, float], None]
+NormKey = Literal["component", "euclidean", "thrusters"]
+SolverKey = Literal["auto", "fast", "reference"]
+
+
+@final
+@dataclass(frozen=True, kw_only=True)
+class OptimumOptions:
+    """What to solve beyond what the scenario says.
+
+    Attributes
+    ----------
+    norms : norms to solve in; empty for both, or the thrusters alone if the scenario names some
+    starts, seed : the multi-start search; None for the scenario's own
+    solver : "auto" is the fast one with the reference as fallback
+    mesh_gap : largest fraction of the peak that finer cells may still gain
+    """
+
+    norms: tuple[NormKey, ...] = ()
+    starts: int | None = None
+    seed: int | None = None
+    solver: SolverKey = "auto"
+    mesh_gap: float = 1e-6
+
+
+@final
+@dataclass(frozen=True)
+class Optimum:
+    """One transfer solved.
+
+    Attributes
+    ----------
+    key : name of the norm in the record
+    answer : the least peak found and its checks
+    limit : the torque (or force) limit given for this norm, its unit, or None
+    hopeless : why the limit cannot be met by any controller, or None
+    """
+
+    key: NormKey
+    problem: TransferProblem
+    answer: PeakAnswer
+    limit: float | None
+    hopeless: Explanation | None
+
+    @property
+    def within_limit(self) -> bool | None:
+        """Whether the history found respects the limit; None without a limit or a history."""
+        return None if self.limit is None or self.answer.history is None else self.answer.peak <= self.limit
+
+    @property
+    def exit_code(self) -> int:
+        """0 solved (and within the limit), 1 impossible, 3 left open."""
+        from ..optim.peak import Standing
+
+        if self.answer.standing is Standing.IMPOSSIBLE or self.hopeless is not None:
+            return 1
+        if self.answer.standing is Standing.UNDECIDED or self.within_limit is False:
+            return 3
+        return 0
+
+
+@final
+@dataclass(frozen=True)
+class OptimumStudy:
+    """Every transfer of a scenario, solved."""
+
+    scenario: Scenario
+    options: OptimumOptions
+    optima: tuple[Optimum, ...]
+
+    @property
+    def exit_code(self) -> int:
+        """1 if one is impossible, else 3 if one is left open, else 0."""
+        codes = {optimum.exit_code for optimum in self.optima}
+        return 1 if 1 in codes else 3 if 3 in codes else 0
+
+    @property
+    def sentence(self) -> str:
+        """The outcome in one sentence."""
+        words = {0: "found and checked", 1: "impossible", 3: "left open"}
+        counts = {code: sum(o.exit_code == code for o in self.optima) for code in words}
+        parts = [f"{n} {words[code]}" for code, n in counts.items() if n]
+        return f"Of {len(self.optima)} least peaks: {', '.join(parts)}."
+
+
+def run_optimum(
+    scenario: Scenario, options: OptimumOptions | None = None, progress: Progress | None = None
+) -> OptimumStudy:
+    """Find the least peak of the scenario's transfer in each norm."""
+    from ..optim.peak import MultiStart, Refinement, minimum_peak
+    from ..optim.peak.explain import explain
+
+    options = options if options is not None else OptimumOptions()
+    tell = progress if progress is not None else _silent
+    table = scenario.optimum
+    search = MultiStart(
+        starts=table.starts if options.starts is None else options.starts,
+        seed=table.seed if options.seed is None else options.seed,
+    )
+    refinement = Refinement(mesh_gap=options.mesh_gap)
+    keys, optima = norm_keys(scenario, options), []
+    for i, key in enumerate(keys):
+        tell(f"optimum, {key}", i / len(keys))
+        problem = transfer(scenario, norm_of(scenario, key))
+        limit = limit_of(scenario, key)
+        hopeless = explain(problem, limit)
+        answer = minimum_peak(problem, solver=_solver(options.solver), search=search, refinement=refinement)
+        optima.append(Optimum(key, problem, answer, limit, hopeless))
+    tell("done", 1.0)
+    return OptimumStudy(scenario, options, tuple(optima))
+
+
+def norm_keys(scenario: Scenario, options: OptimumOptions) -> tuple[NormKey, ...]:
+    """Norms to solve in, the scenario's own first."""
+    if options.norms:
+        return options.norms
+    if scenario.optimum.thrusters is not None:
+        return ("thrusters",)
+    return ("component", "euclidean") if scenario.optimum.norm == "component" else ("euclidean", "component")
+
+
+def norm_of(scenario: Scenario, key: NormKey) -> Norm:
+    """The norm a key names.
+
+    Raises
+    ------
+    ScenarioError
+        If thrusters are asked for and the scenario names none, or none that span three axes.
+    """
+    from ..scenario import ScenarioError
+
+    if key == "euclidean":
+        return Euclidean()
+    if key == "component":
+        return LargestComponent()
+    where = f"{scenario.path.name}: optimum.thrusters"
+    if scenario.optimum.thrusters is None:
+        raise ScenarioError(where, "is needed for the peak thruster force: give one axis a thruster")
+    try:
+        return ThrusterAxes(tuple(scenario.optimum.thrusters))
+    except ValueError as error:
+        raise ScenarioError(where, str(error)) from None
+
+
+def transfer(scenario: Scenario, norm: Norm) -> TransferProblem:
+    """State the scenario's transfer: its start, windows, final time and tolerances."""
+    table = scenario.optimum
+    return TransferProblem.through(
+        scenario.schedule,
+        body=scenario.body,
+        horizon=final_time(scenario),
+        attitude=[Fraction(x) for x in scenario.initial.attitude],
+        rate=scenario.initial.exact_rate,
+        norm=norm,
+        terminal=Terminal(attitude=table.attitude_tolerance, rate=table.rate_tolerance),
+        profile=WindowProfile.GAIN if table.profile == "gain" else WindowProfile.FULL,
+    )
+
+
+def final_time(scenario: Scenario) -> Fraction:
+    """Final time asked for, else the settling time asked of the laws, else the horizon, s."""
+    if scenario.optimum.final_time is not None:
+        return scenario.optimum.final_time
+    return scenario.horizon if scenario.tune.settle is None else scenario.tune.settle
+
+
+def limit_of(scenario: Scenario, key: NormKey) -> float | None:
+    """Limit given for a norm: the optimum's own for the norm it names, else the scenario's."""
+    table = scenario.optimum
+    own = "thrusters" if table.thrusters is not None else table.norm
+    if table.torque_limit is not None and key == own:
+        return float(table.torque_limit)
+    if scenario.limits is not None and scenario.limits.norm == key:
+        return float(scenario.limits.torque)
+    return None
+
+
+def _solver(key: SolverKey) -> LocalSolver | None:
+    from ..optim.peak import NonlinearProgram, SequentialConvex
+
+    if key == "auto":
+        return None
+    return SequentialConvex() if key == "fast" else NonlinearProgram()
+
+
+def _silent(stage: str, fraction: float) -> None:
+    del stage, fraction
