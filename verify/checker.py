@@ -22,9 +22,12 @@ from __future__ import annotations
 import json
 import re
 import sys
+from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
+from math import comb, lcm
 from pathlib import Path
 from typing import Any
 
@@ -874,6 +877,551 @@ def _factor(ring: Ring, factors: Node, claim: Node) -> Poly:
             raise Invalid(f"{factors.path}: {name}^{power} is not known to be >= 0")
         result = result * base.power(power)
     return result
+
+
+# --- polynomials on [0, 1] in scaled Bernstein form ----------------------------------------------
+
+
+class Form:
+    """p(x) = sum_j a_j x^j (1 - x)^(n - j) / scale, a_j integers, scale > 0: exact, products convolve."""
+
+    __slots__ = ("a", "scale")
+
+    def __init__(self, a: list[int], scale: int = 1) -> None:
+        self.a, self.scale = a, scale
+
+    @classmethod
+    def of(cls, controls: Sequence[Fraction]) -> Form:
+        """Return the polynomial with these Bernstein coefficients."""
+        scale, n = lcm(*(c.denominator for c in controls)), len(controls) - 1
+        return cls([comb(n, j) * int(c * scale) for j, c in enumerate(controls)], scale)
+
+    @classmethod
+    def constant(cls, value: Fraction | int) -> Form:
+        """Return a constant."""
+        return cls.of([Fraction(value)])
+
+    def elevated(self, degree: int) -> list[int]:
+        """Scaled coefficients of the same polynomial with a formal degree."""
+        extra = degree + 1 - len(self.a)
+        return self.a if extra == 0 else _convolve(self.a, [comb(extra, j) for j in range(extra + 1)])
+
+    def __add__(self, other: Form) -> Form:
+        n = max(len(self.a), len(other.a)) - 1
+        if self.scale == other.scale:
+            return Form([x + y for x, y in zip(self.elevated(n), other.elevated(n), strict=True)], self.scale)
+        p, q = other.scale, self.scale
+        pairs = zip(self.elevated(n), other.elevated(n), strict=True)
+        return Form([x * p + y * q for x, y in pairs], self.scale * other.scale)
+
+    def __neg__(self) -> Form:
+        return Form([-x for x in self.a], self.scale)
+
+    def __sub__(self, other: Form) -> Form:
+        return self + (-other)
+
+    def __mul__(self, other: Form) -> Form:
+        return Form(_convolve(self.a, other.a), self.scale * other.scale)
+
+    def times(self, factor: Fraction | int) -> Form:
+        """Return a multiple."""
+        factor = Fraction(factor)
+        return Form([x * factor.numerator for x in self.a], self.scale * factor.denominator)
+
+    def derivative(self) -> Form:
+        """Return dp/dx."""
+        n = len(self.a) - 1
+        if n == 0:
+            return Form([0])
+        return Form([(j + 1) * self.a[j + 1] - (n - j) * self.a[j] for j in range(n)], self.scale)
+
+    def plain(self) -> tuple[list[int], int]:
+        """Bernstein coefficients as integers over one positive denominator."""
+        n = len(self.a) - 1
+        common = lcm(*(comb(n, j) for j in range(n + 1)))
+        return [x * (common // comb(n, j)) for j, x in enumerate(self.a)], self.scale * common
+
+    def is_nonnegative(self, depth: int = 6) -> bool:
+        """Whether p >= 0 on [0, 1] follows from Bernstein coefficients after some halvings."""
+        return min(self.a) >= 0 or _nonnegative(self.plain()[0], depth)
+
+    def is_at_least(self, value: Fraction, depth: int = 6) -> bool:
+        """Whether p >= value on [0, 1] follows likewise."""
+        return (self - Form.constant(value)).is_nonnegative(depth)
+
+
+def _convolve(p: list[int], q: list[int]) -> list[int]:
+    result = [0] * (len(p) + len(q) - 1)
+    for i, x in enumerate(p):
+        if x:
+            for j, y in enumerate(q):
+                result[i + j] += x * y
+    return result
+
+
+def _nonnegative(controls: list[int], depth: int) -> bool:
+    if min(controls) >= 0:
+        return True
+    if depth == 0 or controls[0] < 0 or controls[-1] < 0:
+        return False
+    row, left, right = controls, [], []
+    for power in range(len(controls) - 1, -1, -1):
+        left.append(row[0] << power)
+        right.append(row[-1] << power)
+        row = [x + y for x, y in pairwise(row)]
+    return _nonnegative(left, depth - 1) and _nonnegative(right[::-1], depth - 1)
+
+
+# --- schedules -----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Profile:
+    """g on [0, end]: piece i is the polynomial shapes[i] of (t - knots[i])/(knots[i+1] - knots[i])."""
+
+    knots: Vector
+    shapes: list[Vector]
+    period: Fraction | None
+
+    def square(self, start: Fraction, stop: Fraction) -> Form:
+        """Return g^2 on [start, stop], which must lie within one piece; zero beyond a finite table."""
+        offset = Fraction(0)
+        if self.period is not None:
+            offset = start // self.period * self.period
+        elif start >= self.knots[-1]:
+            return Form([0])
+        a, b = start - offset, stop - offset
+        i = bisect_right(self.knots, a) - 1
+        require(i + 1 < len(self.knots) and b <= self.knots[i + 1], "a step crosses a knot of the schedule")
+        if not any(self.shapes[i]):
+            return Form([0])
+        length = self.knots[i + 1] - self.knots[i]
+        shift, slope = (a - self.knots[i]) / length, (b - a) / length
+        local: Vector = []
+        for c in reversed(self.shapes[i]):
+            local = _times_affine(local, shift, slope)
+            local[0] += c
+        n = len(local) - 1
+        controls = [
+            sum((Fraction(comb(i, j), comb(n, j)) * local[j] for j in range(i + 1)), Fraction(0))
+            for i in range(n + 1)
+        ]
+        g = Form.of(controls)
+        return g * g
+
+
+def _times_affine(p: Vector, shift: Fraction, slope: Fraction) -> Vector:
+    result = [Fraction(0)] * (len(p) + 1)
+    for j, c in enumerate(p):
+        result[j] += c * shift
+        result[j + 1] += c * slope
+    return result
+
+
+def read_profile(data: Node) -> Profile:
+    """Read the schedule of the data."""
+    node = data["schedule"]
+    knots = node["knots"].vector()
+    table = [row.vector() for row in node["shapes"].items()]
+    use = [int(x) for x in node["pieces"].vector(len(knots) - 1)]
+    require(knots[0] == 0 and all(a < b for a, b in pairwise(knots)), "knots must increase from 0")
+    require(all(0 <= i < len(table) for i in use), "a piece names a shape that is not there")
+    period = node["period"].number() if node.has("period") else None
+    require(period is None or period == knots[-1], "a periodic profile must end at its period")
+    return Profile(knots, [table[i] for i in use], period)
+
+
+def describe_profile(profile: Profile) -> str:
+    """Return the schedule for people."""
+    end = show(profile.knots[-1])
+    kind_of = f"repeating every {end} s" if profile.period is not None else f"on [0, {end}] s, then 0"
+    return f"the gain g(t) of the data, {len(profile.shapes)} polynomial pieces, {kind_of}"
+
+
+# --- kind: floor of the filter state ---------------------------------------------------------------
+#
+# Variables: S = 1 - b0, s = sqrt(S), y = |Omega|_J, Omega = w + 2 g^2 kappa bv. Along the closed loop
+#   y' = -(1/2) g^2 kappa (2 - S) y,    |s' + (1/2) g^2 kappa s (2 - S)| <= c A(S) y,
+#   R' = -lambda R + g^2 (2 - S),       k' = gamma R g^2 (2 - S)(y^2 + 2 a S),
+# A(S) = 1 - S/4 - S^2/32 >= sqrt(1 - S/2), c >= 1/sqrt(8 Jmin). A bound whose slope is on its safe
+# side wherever the component touches it, the others within their bounds, is never crossed.
+
+LOOPS = {
+    "persistence-filter": "kappa = 1/R",
+    "adaptive-scaling": "kappa = k, k' = gamma R g^2 [(1 + b0) Omega'J Omega + 2 a |bv|^2]",
+}
+
+
+@dataclass(frozen=True)
+class FloorData:
+    """What the steps of a witness are checked against."""
+
+    law: str
+    lam: Fraction
+    R0: Fraction
+    gamma: Fraction
+    k0: Fraction
+    a: Fraction
+    c: Fraction
+    profile: Profile
+
+
+@dataclass(frozen=True)
+class FloorStep:
+    """One step: its interval, the forms used, and the polynomial of each component."""
+
+    start: Fraction
+    stop: Fraction
+    modes: list[str]
+    x: dict[str, Form]
+    ends: dict[str, tuple[Fraction, Fraction]]
+
+
+Bounds = dict[str, Fraction]
+
+
+def components(law: str, *, tail: bool) -> dict[str, int]:
+    """Components with their side: -1 a lower bound, +1 an upper one."""
+    if law == "persistence-filter":
+        return {"K": -1, "y": 1, "s": 1, "v": 1, "z": 1, "r": -1}
+    if tail:
+        return {"k": -1, "r": -1, "Y": 1, "Z": 1, "L": 1, "U": 1}
+    return {"y": -1, "s": -1, "k": -1, "r": -1, "Y": 1, "Z": 1, "L": 1, "U": 1}
+
+
+def read_steps(place: Node, start: Fraction, sides: dict[str, int]) -> list[FloorStep]:
+    """Read steps that follow each other from `start`, every bound jumping to its loose side only."""
+    steps: list[FloorStep] = []
+    for node in place.items():
+        stop = node["until"].number()
+        require(stop > start, f"{node.path}: a step must end after it begins")
+        x, ends = {}, {}
+        for name in sides:
+            exponent, *mantissas = (int(v) for v in node["bounds"][name].vector())
+            unit = Fraction(2) ** exponent
+            x[name] = Form.of([m * unit for m in mantissas])
+            ends[name] = (mantissas[0] * unit, mantissas[-1] * unit)
+        modes = [mode.text() for mode in node["forms"].items()]
+        steps.append(FloorStep(start, stop, modes, x, ends))
+        if len(steps) > 1:
+            require_loose(sides, {n: e[1] for n, e in steps[-2].ends.items()}, steps[-1], node.path)
+        start = stop
+    require(bool(steps), f"{place.path}: there are no steps")
+    return steps
+
+
+def require_loose(sides: dict[str, int], before: Bounds, step: FloorStep, path: str) -> None:
+    """Check that a step begins no tighter than what is known."""
+    for name, side in sides.items():
+        if name in before:
+            gap = side * (step.ends[name][0] - before[name])
+            require(gap >= 0, f"{path}: the bound {name} begins tighter than is known")
+
+
+def check_step(d: FloorData, step: FloorStep, *, tail: bool) -> None:
+    """Check every differential inequality on a step."""
+    G = d.profile.square(step.start, step.stop)
+    per_second = 1 / (step.stop - step.start)
+    dx = {name: p.derivative().times(per_second) for name, p in step.x.items()}
+    if d.law == "persistence-filter":
+        conditions = persistence_conditions(d, G, step.x, dx, step.modes, tail=tail)
+    elif tail:
+        conditions = adaptive_tail_conditions(d, G, step.x, dx)
+    else:
+        conditions = adaptive_conditions(d, G, step.x, dx, step.modes)
+    for name, condition in conditions:
+        where = f"on [{show(step.start)}, {show(step.stop)}] s"
+        require(condition.is_nonnegative(), f"{name} is not proved {where}")
+
+
+Conditions = Iterator[tuple[str, Form]]
+ONE, TWO = Form.constant(1), Form.constant(2)
+HALF = Fraction(1, 2)
+NO_BOUND = Fraction(3, 2)
+
+
+def angle_factor(S: Form) -> Form:
+    """A(S) = 1 - S/4 - S^2/32."""
+    return ONE - S.times(Fraction(1, 4)) - (S * S).times(Fraction(1, 32))
+
+
+def persistence_conditions(
+    d: FloorData, G: Form, x: dict[str, Form], dx: dict[str, Form], modes: list[str], *, tail: bool
+) -> Conditions:
+    """K <= 1/R; y, s; v, z with S <= R0 z^2/R; and the floor r.
+
+    In v = y sqrt(R/R0), z = s sqrt(R/R0): v' = -(lambda/2) v, z' <= -(lambda/2) z + c v (1 - S/4).
+    """
+    K, y, s, v, z, r = (x[name] for name in ("K", "y", "s", "v", "z", "r"))
+    require(len(modes) == 2 and modes[0] in ("angle", "blind"), "unknown form of the inequalities")
+    yield "K >= 0", K
+    yield "slope of K", K.times(d.lam) - (G * K * K).times(2) - dx["K"]
+    if modes[0] == "angle":
+        S = s * s
+        pull = (G * K * (TWO - S)).times(HALF)
+        yield "s^2 <= 2", TWO - S
+        yield "s >= 0", s
+        yield "slope of y", dx["y"] + pull * y
+        drift = y if tail else y * angle_factor(S)
+        yield "slope of s", dx["s"] - drift.times(d.c) + pull * s
+    else:
+        yield "slope of y", dx["y"]
+        yield "s above sqrt 2", s - Form.constant(NO_BOUND)
+    yield "v >= 0", v
+    yield "y >= 0", y
+    yield "slope of v", dx["v"] + v.times(d.lam / 2)
+    bend = ONE if tail else ONE - (K * z * z).times(d.R0 / 4)
+    yield "slope of z", dx["z"] + z.times(d.lam / 2) - (v * bend).times(d.c)
+    yield "z >= 0", z
+    yield "r >= 0", r
+    if modes[1] == "none":
+        yield "slope of r", -dx["r"] - r.times(d.lam)
+    elif modes[1] == "angle":
+        require(modes[0] == "angle", "the angle is not bounded on this step")
+        yield "slope of r", G * (TWO - s * s) - r.times(d.lam) - dx["r"]
+    else:
+        require(modes[1] == "cascade", "unknown form of the inequalities")
+        require(min(x["r"].plain()[0]) > 0, "the floor is not positive")
+        yield "slope of r", G * (r.times(2) - (z * z).times(d.R0)) - r * (r.times(d.lam) + dx["r"])
+
+
+def adaptive_conditions(
+    d: FloorData, G: Form, x: dict[str, Form], dx: dict[str, Form], modes: list[str]
+) -> Conditions:
+    """Lower bounds y, s, k, r and upper bounds Y, Z, L, U of |Omega|_J, sqrt(S), k, R."""
+    y, s, k, r = (x[name] for name in ("y", "s", "k", "r"))
+    Y, Z, L, U = (x[name] for name in ("Y", "Z", "L", "U"))
+    require(len(modes) == 2 and modes[0] in ("kept", "zero"), "unknown form of the inequalities")
+    S, T = s * s, Z * Z
+    low_room, high_room = TWO - S, TWO - T
+    yield "s^2 <= 2", high_room
+    yield from ((f"{name} >= 0", x[name]) for name in x)
+    low_pull, high_pull = (G * L * low_room).times(HALF), (G * k * high_room).times(HALF)
+    yield "slope of y", -dx["y"] - low_pull * y
+    yield "slope of Y", dx["Y"] + high_pull * Y
+    if modes[0] == "kept":
+        yield "slope of s", -dx["s"] - (Y * angle_factor(S)).times(d.c) - low_pull * s
+    else:
+        yield "s = 0", -s
+    yield "slope of Z", dx["Z"] - (Y * angle_factor(T)).times(d.c) + high_pull * Z
+    yield "slope of r", G * high_room - r.times(d.lam) - dx["r"]
+    yield "slope of U", dx["U"] + U.times(d.lam) - G * low_room
+    for room, square in ((low_room, S), (high_room, T)):
+        yield "slope of k", (G * r * room * (y * y + square.times(2 * d.a))).times(d.gamma) - dx["k"]
+    a, square = d.a, Y * Y
+    if modes[1] == "top":
+        crest = ONE + square.times(1 / (4 * a))
+        f = (crest * crest).times(2 * a)
+    elif modes[1] == "rising":
+        f = high_room * (square + T.times(2 * a))
+        yield "f rises up to s", Form.constant(4 * a) - square - T.times(4 * a)
+    elif modes[1] == "falling":
+        f = low_room * (square + S.times(2 * a))
+        yield "f falls from s on", square + S.times(4 * a) - Form.constant(4 * a)
+    else:
+        require(modes[1] == "split", "unknown form of the inequalities")
+        f = low_room * (square + T.times(2 * a))
+    yield "slope of L", dx["L"] - (G * U * f).times(d.gamma)
+
+
+def adaptive_tail_conditions(d: FloorData, G: Form, x: dict[str, Form], dx: dict[str, Form]) -> Conditions:
+    """Repeating part: k held, (Y, Z) may be scaled down together, L grows by what (Y, Z) feed it."""
+    k, r, Y, Z, U = (x[name] for name in ("k", "r", "Y", "Z", "U"))
+    T = Z * Z
+    room = TWO - T
+    pull = (G * k * room).times(HALF)
+    yield "s^2 <= 2", room
+    yield from ((f"{name} >= 0", x[name]) for name in x)
+    yield "slope of k", -dx["k"]
+    yield "slope of r", G * room - r.times(d.lam) - dx["r"]
+    yield "slope of Y", dx["Y"] + pull * Y
+    yield "slope of Z", dx["Z"] - Y.times(d.c) + pull * Z
+    yield "slope of U", dx["U"] + U.times(d.lam) - G.times(2)
+    yield "slope of L", dx["L"] - (G * U * (Y * Y + T.times(2 * d.a))).times(2 * d.gamma)
+
+
+def read_floor_data(data: Node, witness: Node) -> tuple[FloorData, list[Matrix]]:
+    """Read the loop's data and check the coupling c >= 1/sqrt(8 Jmin) for every inertia."""
+    law = data["law"]["name"].text()
+    require(law in LOOPS, f"no comparison system is known for the law {law!r}")
+    names = ["lambda", "R0"] + (["gamma", "k0", "a"] if law == "adaptive-scaling" else [])
+    values = {name: data["parameters"][name].number() for name in names}
+    require(all(v > 0 for n, v in values.items() if n != "k0"), "parameters must be positive")
+    require(values.get("k0", Fraction(0)) >= 0, "k0 must not be negative")
+    inertias, c = inertia_vertices(data), witness["coupling"].number()
+    require(c > 0, "the coupling must be positive")
+    for J in inertias:  # convex in J: the vertices suffice
+        gap = [[8 * c * c * J[i][j] - (1 if i == j else 0) for j in range(3)] for i in range(3)]
+        require(is_positive_semidefinite(gap), "the coupling is below 1/sqrt(8 Jmin)")
+    zero = Fraction(0)
+    gamma, k0, a = (values.get(n, zero) for n in ("gamma", "k0", "a"))
+    loop = FloorData(law, values["lambda"], values["R0"], gamma, k0, a, c, read_profile(data))
+    return loop, inertias
+
+
+PI_HIGH = Fraction(31415926535897932384626433832795028842, 10**37)
+"""Above pi, by less than 1e-37."""
+
+
+def cosine_below(degrees: Fraction) -> Fraction:
+    """Return a rational <= cos(degrees), 0 <= degrees <= 180, by an alternating series cut while it falls."""
+    x = degrees * PI_HIGH / 180
+    term, total_, k = Fraction(1), Fraction(1), 0
+    while k % 2 == 0 or abs(term) > Fraction(1, 10**40):
+        k += 1
+        term = -term * x * x / ((2 * k - 1) * (2 * k))
+        total_ += term
+    return total_
+
+
+def check_initial_set(data: Node, d: FloorData, inertias: list[Matrix], witness: Node) -> str:
+    """Check that the witness's box [0, s] x [0, y] holds the initial set; return the set for people."""
+    node, box = data["initial_set"], witness["box"]
+    s, y = box["s"].number(), box["y"].number()
+    angle = node["max_angle_deg"].number()
+    require(0 <= angle <= 360 and s >= 0 and y >= 0, "the initial set is not one")
+    require(s * s >= 2 or angle == 0 or s * s >= 1 - cosine_below(angle / 2), "s is too small for the angle")
+    words = [f"2 acos(b0) <= {show(angle)} deg"]
+    enough = False
+    if node.has("max_weighted_rate"):
+        weighted = node["max_weighted_rate"].number()
+        words.append(f"sqrt(Omega'J Omega) <= {show(weighted)}")
+        enough = y >= weighted
+    if node.has("max_rate") or not node.has("max_weighted_rate"):
+        rate = node["max_rate"].number() if node.has("max_rate") else Fraction(0)
+        words.append(f"|w| <= {show(rate)} rad/s" if node.has("max_rate") else "at rest")
+        g = d.profile.shapes[0][0] if d.profile.shapes[0] else Fraction(0)
+        kappa = 1 / d.R0 if d.law == "persistence-filter" else d.k0
+        reach = abs(rate) + 2 * g * g * kappa * min(Fraction(1), s * NO_BOUND)  # |bv| <= s sqrt 2
+        greatest = witness["greatest_inertia"].number()
+        bounded = all(
+            is_positive_semidefinite(
+                [[(greatest if i == j else 0) - J[i][j] for j in range(3)] for i in range(3)]
+            )
+            for J in inertias
+        )
+        require(bounded, "the greatest inertia is too small")
+        enough = enough or y * y >= greatest * reach * reach
+    require(enough, "y is too small for the rates of the set")
+    return ", ".join(words)
+
+
+def require_cover(bins: list[tuple[Vector, Vector]], s: Fraction, y: Fraction) -> None:
+    """Check that rectangles cover [0, s] x [0, y]."""
+    s_edges = sorted({Fraction(0), s, *(e for b, _ in bins for e in b if 0 < e < s)})
+    y_edges = sorted({Fraction(0), y, *(e for _, b in bins for e in b if 0 < e < y)})
+    for a, b in list(pairwise(s_edges)) or [(s, s)]:
+        for c, e in list(pairwise(y_edges)) or [(y, y)]:
+            held = any(p[0] <= a and b <= p[1] and q[0] <= c and e <= q[1] for p, q in bins)
+            require(held, f"no bin holds s in [{show(a)}, {show(b)}], y in [{show(c)}, {show(e)}]")
+
+
+@dataclass(frozen=True)
+class FloorBin:
+    """One bin's proved witness."""
+
+    steps: list[FloorStep]
+    tail: list[FloorStep]
+    ratio: Fraction
+    ends: Bounds
+
+
+def check_bin(d: FloorData, place: Node, s: Vector, y: Vector) -> FloorBin:
+    """Check one bin: its start, its steps, and its repeating part if it has one."""
+    sides = components(d.law, tail=False)
+    steps = read_steps(place["steps"], Fraction(0), sides)
+    if d.law == "persistence-filter":
+        known = {"K": 1 / d.R0, "r": d.R0, "y": y[1], "v": y[1], "s": s[1], "z": s[1]}
+    else:
+        known = {"k": d.k0, "L": d.k0, "r": d.R0, "U": d.R0, "y": y[0], "Y": y[1], "s": s[0], "Z": s[1]}
+    require_loose(sides, known, steps[0], place.path)
+    for step in steps:
+        check_step(d, step, tail=False)
+    ends = {name: pair[1] for name, pair in steps[-1].ends.items()}
+    if not place.has("tail"):
+        return FloorBin(steps, [], Fraction(1), ends)
+    tail, ratio = check_tail(d, place["tail"], steps[-1].stop, ends)
+    return FloorBin(steps, tail, ratio, ends)
+
+
+def check_tail(d: FloorData, place: Node, start: Fraction, known: Bounds) -> tuple[list[FloorStep], Fraction]:
+    """Check a part that repeats for ever: lower bounds end no lower, upper bounds no higher than they began.
+
+    Those of angle and rate end at most `ratio` times where they began.
+    """
+    period, ratio = d.profile.period, place["ratio"].number()
+    require(period is not None, "a finite schedule has no repeating part")
+    assert period is not None
+    require(start % period == 0, "the repeating part must begin at a whole period")
+    require(0 <= ratio < 1, "the ratio must lie in [0, 1)")
+    sides = components(d.law, tail=True)
+    steps = read_steps(place["steps"], start, sides)
+    require(steps[-1].stop == start + period, "the repeating part must cover one period")
+    require_loose(sides, known, steps[0], place.path)
+    blind = False
+    for step in steps:
+        check_step(d, step, tail=True)
+        blind = blind or step.modes[:1] == ["blind"]
+    decaying = {"y", "s", "v", "z", "Y", "Z"} - ({"y", "s"} if blind else set())
+    for name, side in sides.items():
+        first, last = steps[0].ends[name][0], steps[-1].ends[name][1]
+        if name in decaying:
+            require(last <= ratio * first, f"{place.path}: {name} does not shrink by the ratio")
+        elif name not in ("L", "y", "s"):
+            require(side * (first - last) >= 0, f"{place.path}: {name} does not come back to where it began")
+    return steps, ratio
+
+
+@kind("filter-floor")
+def check_filter_floor(data: Node, certificate: Node) -> list[str]:
+    """R >= floor from every start of a set, for all time or up to a horizon; and convergence."""
+    claim, witness = certificate["claim"], certificate["witness"]
+    d, inertias = read_floor_data(data, witness)
+    words = check_initial_set(data, d, inertias, witness)
+    places = witness["bins"].items()
+    rectangles = [(p["s"].vector(2), p["y"].vector(2)) for p in places]
+    require_cover(rectangles, witness["box"]["s"].number(), witness["box"]["y"].number())
+    bins = [check_bin(d, p, s, y) for p, (s, y) in zip(places, rectangles, strict=True)]
+    floor = claim["floor"].number()
+    require(floor > 0, "the floor must be positive")
+    for proved in bins:
+        for step in (*proved.steps, *proved.tail):
+            require(step.x["r"].is_at_least(floor), f"r falls below the floor after {show(step.start)} s")
+    if claim.has("horizon"):
+        horizon = claim["horizon"].number()
+        reached = all(b.tail or b.steps[-1].stop >= horizon for b in bins)
+        require(reached, "a bin ends before the horizon")
+        when = f"on [0, {show(horizon)}] s"
+    else:
+        require(all(b.tail for b in bins), "a bin has no repeating part: no claim for all time")
+        when = "for all t >= 0"
+    adaptive = d.law == "adaptive-scaling"
+    start = f", k(0) = {show(d.k0)} 1/s" if adaptive else ""
+    gains = f", gamma = {show(d.gamma)}, a = {show(d.a)}" if adaptive else ""
+    lines = [
+        f"R(t) >= {show(floor)} s {when},",
+        f"from every start with {words}, R(0) = {show(d.R0)} s{start},",
+        f"R' = -lambda R + g^2 (1 + b0), lambda = {show(d.lam)} 1/s,",
+        f"law {d.law}: Omega = w + 2 g^2 kappa bv, {LOOPS[d.law]}{gains},",
+        f"{describe_profile(d.profile)},",
+        describe_inertia(data),
+    ]
+    return [*lines, *check_convergence(claim, bins, d)]
+
+
+def check_convergence(claim: Node, bins: list[FloorBin], d: FloorData) -> list[str]:
+    """Check that sqrt(1 - b0) and |Omega|_J shrink by the claimed ratio per period, if that is claimed."""
+    if not claim.has("ratio"):
+        return []
+    ratio, start = claim["ratio"].number(), claim["ratio_from"].number()
+    require(ratio < 1, "the ratio must be below 1")
+    shrinks = all(b.tail and b.ratio <= ratio and b.tail[0].start <= start for b in bins)
+    require(shrinks, "a bin does not shrink by the ratio")
+    assert d.profile.period is not None
+    return [
+        f"and the bounds of sqrt(1 - b0) and |Omega|_J shrink by a factor {show(ratio)} every "
+        f"{show(d.profile.period)} s from t = {show(start)} s on: attitude and rate converge"
+    ]
 
 
 # --- command line ------------------------------------------------------------------------------

@@ -9,8 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from math import degrees
-from typing import final
+from typing import Any, final
 
+from ..certificates.format import Certificate
 from ..convergence import Convergence
 from ..verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict
 from .certify import Floor
@@ -34,6 +35,7 @@ class FloorFacts:
     converged : for periodic schedules
     along_run : least R of the scenario's own run, s, and its horizon, s
     worst : least R found over the set
+    certificate : the floor written out for the stand-alone checker
     """
 
     law_name: str
@@ -41,6 +43,7 @@ class FloorFacts:
     converged: ConvergedFloor | None = None
     along_run: tuple[float, float] | None = None
     worst: WorstFound | None = None
+    certificate: Certificate | None = None
 
 
 def floor_claim(facts: FloorFacts) -> Claim:
@@ -72,7 +75,7 @@ def floor_claim(facts: FloorFacts) -> Claim:
             f"R(t) >= {_down(floor.value)} s {asked}, from every start with {floor.initial.description}"
         ),
         verdict=Verdict.PROVED,
-        evidence=(_certificate(floor), *_search_evidence(facts)),
+        evidence=(_certificate(facts, floor), *_search_evidence(facts)),
         quantities=(certified, *quantities),
         source=MUELLER,
     )
@@ -118,7 +121,7 @@ def convergence_claim(facts: FloorFacts, found: Convergence | None, attitude: fl
         title=title,
         statement=statement,
         verdict=Verdict.PROVED,
-        evidence=(_certificate(floor), cascade),
+        evidence=(_certificate(facts, floor), cascade),
         quantities=quantities,
         source=PAGE,
     )
@@ -156,7 +159,7 @@ def torque_claim(
             title=title,
             statement=statement,
             verdict=Verdict.PROVED,
-            evidence=(_certificate(floor),),
+            evidence=(_certificate(facts, floor),),
             quantities=quantities,
             margins=(margin,),
             source=PAGE,
@@ -216,12 +219,15 @@ def _reach_quantities(floor: Floor, found: Convergence) -> tuple[Quantity, ...]:
     return tuple(items)
 
 
-def _certificate(floor: Floor) -> Evidence:
+def _certificate(facts: FloorFacts, floor: Floor) -> Evidence:
     summary = (
         f"{len(floor.witnesses)} polynomial sub- and supersolutions, {floor.steps} steps, every differential "
         "inequality proved by Bernstein coefficients in exact rationals"
     )
-    return Evidence(EvidenceKind.CERTIFICATE, summary, source=MUELLER, details={"steps": floor.steps})
+    details: dict[str, Any] = {"steps": floor.steps}
+    if facts.certificate is not None:
+        details["certificate"] = facts.certificate
+    return Evidence(EvidenceKind.CERTIFICATE, summary, source=MUELLER, details=details)
 
 
 def _search_evidence(facts: FloorFacts) -> tuple[Evidence, ...]:

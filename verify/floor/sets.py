@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from math import inf, nextafter
 from typing import final
 
 from ...models.rigid_body import RigidBody
@@ -65,7 +66,8 @@ class InitialSet:
             )
         s_high = 0.0
         if max_angle_deg > 0:
-            s_high = min(float_above((1 - (ball(max_angle_deg) / 360).cos_pi()).sqrt()), LARGEST_S)
+            s_high = float_above((1 - (ball(max_angle_deg) / 360).cos_pi()).sqrt())
+            s_high = min(nextafter(s_high, inf), LARGEST_S)  # room for a checker with a rational pi
         reaches = []
         if max_rate is not None or max_weighted_rate is None:
             reach = (max_rate or Fraction(0)) + 2 * gain_term * _greatest_bv(s_high)

@@ -11,8 +11,9 @@ from ...models.rigid_body import RigidBody
 from ...models.schedule import Schedule
 from ..convergence import Convergence, analyse_convergence
 from ..verdict import Claim
+from .certificate import floor_certificate
 from .certify import Floor, FloorOptions, certify_floor
-from .claims import FloorFacts, convergence_claim, floor_claim, torque_claim
+from .claims import FloorFacts, convergence_claim, floor_claim, reaches_far_enough, torque_claim
 from .comparison import BodyBounds
 from .converged import ConvergedFilter, ConvergedFloor
 from .sets import InitialSet
@@ -116,8 +117,16 @@ def answer(question: FloorQuestion) -> FloorAnswer:
     if floor is not None and floor.steps:
         torque = torque_bound(floor)
         found = analyse_convergence(floor, attitude=float(q.attitude), rate=float(q.rate))
+    certificate = None
+    if floor is not None and reaches_far_enough(floor):
+        certificate = floor_certificate(q, floor)
     facts = FloorFacts(
-        law_name=q.law.name, floor=floor, converged=converged, along_run=q.run_floor, worst=worst
+        law_name=q.law.name,
+        floor=floor,
+        converged=converged,
+        along_run=q.run_floor,
+        worst=worst,
+        certificate=certificate,
     )
     claims = [floor_claim(facts), convergence_claim(facts, found, float(q.attitude), float(q.rate))]
     if q.torque_limit is not None:

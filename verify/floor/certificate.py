@@ -1,0 +1,108 @@
+"""A certified floor as a certificate: witnesses written out, for the stand-alone checker."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from fractions import Fraction
+from math import frexp
+from typing import TYPE_CHECKING, Any
+
+from ...models.schedule import Schedule
+from ..certificates.format import Certificate
+from ..enclosure.stepping import Step
+from .certify import Floor
+from .witness import Witness
+
+if TYPE_CHECKING:
+    from .study import FloorQuestion
+
+KIND = "filter-floor"
+LAW_PARAMETERS = ("lambda", "gamma", "R0", "k0", "a")
+
+
+def floor_certificate(question: FloorQuestion, floor: Floor) -> Certificate:
+    """Certificate of R >= floor, and of convergence where every witness has a repeating part."""
+    q = question
+    data: dict[str, Any] = {
+        "inertia": q.body.exact_inertia,
+        "law": {"name": q.law.name},
+        "parameters": {n: v for n, v in q.law.parameters.items() if n in LAW_PARAMETERS},
+        "schedule": schedule_data(q.schedule),
+        "initial_set": {"max_angle_deg": q.max_angle_deg},
+    }
+    if q.inertia_tolerance is not None:
+        data["inertia_tolerance"] = q.inertia_tolerance
+    for name, value in (("max_rate", q.max_rate), ("max_weighted_rate", q.max_weighted_rate)):
+        if value is not None:
+            data["initial_set"][name] = value
+    claim: dict[str, Any] = {"floor": Fraction(floor.value)}
+    tails = [w.tail for w in floor.witnesses]
+    if floor.horizon is not None:
+        claim["horizon"] = floor.horizon
+    else:
+        ratios = [max(t.ratios.values(), default=0.0) for t in tails if t is not None]
+        claim["ratio"] = Fraction(max(ratios))
+        claim["ratio_from"] = max(t.start for t in tails if t is not None)
+    return Certificate(KIND, data, claim, _witness(question, floor))
+
+
+def schedule_data(schedule: Schedule) -> dict[str, Any]:
+    """The gain profile: knots, the distinct shapes, which shape each piece has, and the period."""
+    profile = schedule.profile
+    shapes = list(dict.fromkeys(profile.shapes))
+    index = {shape: i for i, shape in enumerate(shapes)}
+    data: dict[str, Any] = {
+        "knots": profile.knots,
+        "shapes": shapes,
+        "pieces": [index[shape] for shape in profile.shapes],
+    }
+    if schedule.period is not None:
+        data["period"] = schedule.period
+    return data
+
+
+def _witness(question: FloorQuestion, floor: Floor) -> dict[str, Any]:
+    witness: dict[str, Any] = {
+        "coupling": Fraction(floor.bounds.coupling),
+        "box": {"s": Fraction(floor.initial.s_high), "y": Fraction(floor.initial.y_high)},
+        "bins": [_bin(w) for w in floor.witnesses],
+    }
+    if question.max_rate is not None or question.max_weighted_rate is None:
+        witness["greatest_inertia"] = floor.bounds.greatest
+    return witness
+
+
+def _bin(witness: Witness) -> dict[str, Any]:
+    i = witness.initial
+    entry: dict[str, Any] = {
+        "s": [Fraction(i.s_low), Fraction(i.s_high)],
+        "y": [Fraction(i.y_low), Fraction(i.y_high)],
+        "steps": _steps(witness.steps),
+    }
+    if witness.tail is not None:
+        ratio = max(witness.tail.ratios.values(), default=0.0)
+        entry["tail"] = {"ratio": Fraction(ratio), "steps": _steps(witness.tail.steps)}
+    return entry
+
+
+def _steps(steps: Iterable[Step]) -> list[dict[str, Any]]:
+    return [
+        {
+            "until": step.stop,
+            "forms": list(step.modes),
+            "bounds": {name: scaled_integers(c) for name, c in step.controls.items()},
+        }
+        for step in steps
+    ]
+
+
+def scaled_integers(values: Sequence[float]) -> list[int]:
+    """[e, n_0, n_1, ...] with values[i] = n_i 2^e exactly."""
+    exponents = [frexp(v)[1] - 53 for v in values if v != 0.0]
+    if not exponents:
+        return [0, *(0 for _ in values)]
+    e = min(exponents)
+    integers = [int(Fraction(v) / Fraction(2) ** e) for v in values]
+    while all(n % 2 == 0 for n in integers):
+        integers, e = [n // 2 for n in integers], e + 1
+    return [e, *integers]
