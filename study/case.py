@@ -58,7 +58,7 @@ def check_case(
         run = run_law(scenario, law)
     progress("V' as a polynomial", 0.1)
     proved = lyapunov_claims(
-        law, scenario.body, tolerance=scenario.inertia_tolerance, schedule=scenario.schedule
+        law, scenario.body, tolerance=scenario.inertia_tolerance
     )
     claims |= {claim.key: claim for claim in proved}
     progress("floor of R", 0.3)
