@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import final
 
@@ -11,6 +11,7 @@ from ..models.laws import Law
 from ..scenario import LawChoice, Scenario
 from ..verify.derivative import SampledDerivative, with_samples
 from ..verify.filter_start import filter_start_claim
+from ..verify.floor.claims import torque_quantities
 from ..verify.floor.study import FloorAnswer, answer
 from ..verify.lyapunov.claims import lyapunov_claims
 from ..verify.verdict import Claim, Verdict
@@ -57,14 +58,16 @@ def check_case(
         progress("simulation", 0.0)
         run = run_law(scenario, law)
     progress("V' as a polynomial", 0.1)
-    proved = lyapunov_claims(
-        law, scenario.body, tolerance=scenario.inertia_tolerance
-    )
+    proved = lyapunov_claims(law, scenario.body, tolerance=scenario.inertia_tolerance)
     claims |= {claim.key: claim for claim in proved}
     progress("floor of R", 0.3)
     question = floor_question(scenario, law, run)
     found = answer(question)
     claims |= {claim.key: claim for claim in found.claims}
+    if found.torque is not None and "torque.limit" not in claims:
+        convergence = claims["convergence"]
+        quantities = (*convergence.quantities, *torque_quantities(found.torque))
+        claims["convergence"] = replace(convergence, quantities=quantities)
     if margins and claims["convergence"].verdict is Verdict.PROVED:
         progress("margins of convergence", 0.6)
         certified = partial(is_certified, question)

@@ -40,7 +40,7 @@ def floor_question(scenario: Scenario, law: Law, run: Run | None) -> FloorQuesti
         torque_norm="component" if limits is None else limits.norm,
         run_floor=along,
         run_peak=peak,
-        search=Search(seed=scenario.check.seed),
+        search=Search(samples=64, rounds=2, local=24, seed=scenario.check.seed),
     )
 
 

@@ -46,7 +46,10 @@ def convergence_margins(scenario: Scenario, choice: LawChoice, certified: Certif
     if schedule.is_periodic and run is not None:
         at, gap = run.on, run.length
         found = greatest_certified(
-            lambda extra: certified(law, longer_gap(schedule, at, extra)), gap / 2, limit=gap * LARGEST_GAP
+            lambda extra: certified(law, longer_gap(schedule, at, extra)),
+            gap / 2,
+            limit=gap * LARGEST_GAP,
+            steps=3,
         )
         if found.certified:
             longest = replace(found, certified=found.certified + gap)
@@ -81,9 +84,9 @@ def _least_lambda(choice: LawChoice, schedule: Schedule, certified: Certified) -
         lambda drop: certified(choice.with_parameters(**{"lambda": given - drop}).build(), schedule),
         given / 2,
         limit=given * (1 - LEAST_LAMBDA),
-        steps=3,
+        steps=2,
     )
     if found.certified:
         least = float(given - found.certified)
         label = "least lambda for which convergence was certified"
-        yield Quantity("least_lambda_certified", least, least, "1/s", label, rigorous=True)
+        yield Quantity("least_lambda_certified", 0.0, least, "1/s", label, rigorous=True, side="upper")

@@ -37,7 +37,7 @@ class Margin:
 
     def quantity(self, name: str, unit: str, label: str) -> Quantity:
         """As a lower bound: the claim is certified at least up to here."""
-        return Quantity(name, rounded_down(self.certified), inf, unit, label, rigorous=True)
+        return Quantity(name, rounded_down(self.certified), inf, unit, label, rigorous=True, side="lower")
 
 
 def greatest_certified(holds: Holds, first: Fraction, *, limit: Fraction, steps: int = 5) -> Margin:

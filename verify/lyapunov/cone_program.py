@@ -63,14 +63,14 @@ def maximise_level(
             rows.append(r)
             places.append(column + 1)
             values.append(value)
-    for r in np.flatnonzero(level_column):
-        rows.append(int(r))
+    for r in np.flatnonzero(level_column).tolist():
+        rows.append(r)
         places.append(0)
         values.append(float(level_column[r]))
     rows.append(m)
     places.append(0)
     values.append(1.0)
-    offsets = m + 1 + np.concatenate([[0], np.cumsum([n * (n + 1) // 2 for n in sizes])]).astype(int)
+    offsets = [m + 1, *(m + 1 + np.cumsum([n * (n + 1) // 2 for n in sizes])).tolist()]
     for number, (which, p, q) in enumerate(columns):
         rows.append(int(offsets[which]) + q * (q + 1) // 2 + p)
         places.append(number + 1)
