@@ -2,8 +2,10 @@
 
 A quantity is known to lie in [low, high].
 
-- two-sided: as many digits as every value in the interval rounds to; if that is fewer than two,
-  the interval itself, rounded outward;
+- a rigorous enclosure: as many digits as every value in it rounds to; where that would hide
+  digits (or is fewer than two), the interval itself, rounded outward;
+- an ordinary figure: digits whose unit is at least half the width, so that the last is uncertain
+  by one at most; the interval if fewer than two are left;
 - a lower bound: low, rounded down; an upper bound: high, rounded up;
 - not available: a dash and the note.
 
@@ -111,11 +113,10 @@ def _between(low: float, high: float, most: int, unit: str, rigorous: bool, note
         if exact == Decimal(low) or Decimal(repr(low)) == exact:
             mantissa, exponent = _layout(exact, exact)
             return Written("", _trim(_plain(mantissa(exact))), "", exponent, unit, rigorous, note)
-    for digits in range(most, 1, -1):
-        a, b = (_rounded(x, digits, ROUND_HALF_EVEN) for x in (low, high))
-        if a == b and a != 0:
-            mantissa, exponent = _layout(a, a)
-            return Written("", _plain(mantissa(a)), "", exponent, unit, rigorous, note)
+    shared = _shared(low, high, most) if rigorous else _central(low, high, most)
+    if shared is not None:
+        mantissa, exponent = _layout(shared, shared)
+        return Written("", _plain(mantissa(shared)), "", exponent, unit, rigorous, note)
     largest = max(abs(low), abs(high))
     digits = min(most, 2 + max(0, math.floor(math.log10(largest)) - math.floor(math.log10(high - low))))
     step = Decimal(1).scaleb(Decimal(largest).adjusted() - digits + 1)
@@ -123,6 +124,34 @@ def _between(low: float, high: float, most: int, unit: str, rigorous: bool, note
     b = Decimal(high).quantize(step, ROUND_CEILING, _EXACT)
     mantissa, exponent = _layout(a, b)
     return Written("", _plain(mantissa(a)), _plain(mantissa(b)), exponent, unit, rigorous, note)
+
+
+def _shared(low: float, high: float, most: int) -> Decimal | None:
+    """Find the digits every value of the interval rounds to, unless they say much less than the interval."""
+    useful = _useful(low, high)
+    for digits in range(most, 1, -1):
+        a, b = (_rounded(x, digits, ROUND_HALF_EVEN) for x in (low, high))
+        if a == b and a != 0 and digits >= min(useful, most) - 1:
+            return a
+    return None
+
+
+def _central(low: float, high: float, most: int) -> Decimal | None:
+    """Round the middle so that its last digit is uncertain by one at most."""
+    digits = min(_useful(low, high), most)
+    return _rounded(low + (high - low) / 2, digits, ROUND_HALF_EVEN) if digits >= 2 else None
+
+
+def _useful(low: float, high: float) -> int:
+    """Count the digits of the middle whose unit is at least half the width."""
+    width, middle = Decimal(high) - Decimal(low), abs(Decimal(low) + Decimal(high)) / 2
+    if middle == 0 or width >= middle:
+        return 0
+    if width == 0:
+        return 17
+    half = width / 2
+    unit = half.adjusted() + (0 if half == Decimal(1).scaleb(half.adjusted()) else 1)
+    return middle.adjusted() - unit + 1
 
 
 def _unbounded(low: float, high: float, unit: str, rigorous: bool, note: str) -> Written:
@@ -147,8 +176,6 @@ def _rounded(value: float, digits: int, rounding: str) -> Decimal:
     exact = Decimal(value)
     if exact == 0:
         return Decimal(0)
-    if rounding != ROUND_HALF_EVEN and len(Decimal(repr(value)).as_tuple().digits) <= digits:
-        return Decimal(repr(value))
     return exact.quantize(Decimal(1).scaleb(exact.adjusted() - digits + 1), rounding, _EXACT)
 
 

@@ -1,0 +1,213 @@
+"""The kinds of block a chapter is made of. Writers (HTML, PDF, LaTeX) know these and no record."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Cell = str | None | Mapping[str, Any]
+"""Text, nothing, a quantity, {"verdict": ...}, {"code": ...} or {"matrix": ..., "unit": ...}."""
+
+
+@final
+@dataclass(frozen=True)
+class Text:
+    """A paragraph of plain text; a warning is set apart."""
+
+    text: str
+    kind: Literal["plain", "note", "warning"] = "plain"
+
+
+@final
+@dataclass(frozen=True)
+class Card:
+    """One law's answer at a glance: counts of verdicts and a few numbers."""
+
+    label: str
+    verdicts: tuple[tuple[str, int], ...]
+    numbers: tuple[Mapping[str, Any], ...]
+
+
+@final
+@dataclass(frozen=True)
+class Cards:
+    """Cards side by side."""
+
+    cards: tuple[Card, ...]
+
+
+@final
+@dataclass(frozen=True)
+class Group:
+    """Claims under one heading."""
+
+    label: str
+    claims: tuple[Mapping[str, Any], ...]
+
+
+@final
+@dataclass(frozen=True)
+class Verdicts:
+    """The verdict table."""
+
+    groups: tuple[Group, ...]
+
+
+@final
+@dataclass(frozen=True)
+class ClaimDetails:
+    """Every claim in full: numbers, evidence, witness, reason and next step."""
+
+    groups: tuple[Group, ...]
+
+
+@final
+@dataclass(frozen=True)
+class Facts:
+    """Label and value, row by row."""
+
+    rows: tuple[tuple[str, Cell], ...]
+    title: str = ""
+
+
+@final
+@dataclass(frozen=True)
+class Table:
+    """A table; `columns` are (key, label, unit)."""
+
+    key: str
+    title: str
+    columns: tuple[tuple[str, str, str], ...]
+    rows: tuple[Mapping[str, Cell], ...]
+    notes: tuple[str, ...] = ()
+
+
+@final
+@dataclass(frozen=True)
+class Equation:
+    """One displayed equation in Typst's and LaTeX's notation (trusted, part of the package)."""
+
+    title: str
+    typst: str
+    latex: str
+
+
+@final
+@dataclass(frozen=True)
+class Equations:
+    """Displayed equations."""
+
+    equations: tuple[Equation, ...]
+
+
+@final
+@dataclass(frozen=True)
+class Verbatim:
+    """Text set exactly as it is."""
+
+    title: str
+    text: str
+
+
+@final
+@dataclass(frozen=True)
+class Line:
+    """One series: `y` against `x`; `upper` closes a band."""
+
+    label: str
+    x: Array
+    y: Array
+    style: str = "line"
+    colour: int = 0
+    dashed: bool = False
+    upper: Array | None = None
+
+
+@final
+@dataclass(frozen=True)
+class Axis:
+    """Label, unit, and whether it is logarithmic."""
+
+    label: str
+    unit: str = ""
+    log: bool = False
+
+
+@final
+@dataclass(frozen=True)
+class Chart:
+    """A figure. `windows` are shaded; `reach` is a common (low, high) for y, so that neighbours compare."""
+
+    key: str
+    title: str
+    x: Axis
+    y: Axis
+    lines: tuple[Line, ...]
+    alt: str
+    windows: tuple[tuple[float, float], ...] = ()
+    reach: tuple[float, float] | None = None
+    notes: tuple[str, ...] = ()
+
+
+@final
+@dataclass(frozen=True)
+class Charts:
+    """Figures side by side."""
+
+    charts: tuple[Chart, ...]
+
+
+@final
+@dataclass(frozen=True)
+class Body:
+    """One turning body of the replay: `torque` is the applied g u, N m."""
+
+    label: str
+    time: Array
+    quaternion: Array
+    torque: Array | None
+
+
+@final
+@dataclass(frozen=True)
+class Replay:
+    """Bodies turning through the windows, on one time axis."""
+
+    bodies: tuple[Body, ...]
+    windows: tuple[tuple[float, float], ...]
+    inertia: tuple[tuple[float, ...], ...] | None
+
+
+Block = (
+    Text | Cards | Verdicts | ClaimDetails | Facts | Table | Equations | Verbatim | Charts | Replay
+)  # a closed list: a writer must know each
+
+
+@final
+@dataclass(frozen=True)
+class Chapter:
+    """A heading and its blocks; `key` is safe in an address and a file name."""
+
+    key: str
+    title: str
+    blocks: tuple[Block, ...]
+
+
+def charts_of(chapters: Sequence[Chapter]) -> tuple[Chart, ...]:
+    """Every chart, in order."""
+    found: list[Chart] = []
+    for chapter in chapters:
+        for block in chapter.blocks:
+            if isinstance(block, Charts):
+                found.extend(block.charts)
+    return tuple(found)
+
+
+def tables_of(chapters: Sequence[Chapter]) -> tuple[Table, ...]:
+    """Every table, in order."""
+    return tuple(b for chapter in chapters for b in chapter.blocks if isinstance(b, Table))

@@ -1,0 +1,277 @@
+"""The simulated runs: filter state, torque, attitude, rate and Lyapunov function, law beside law."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, final
+
+import numpy as np
+
+from ..record import Array, Record
+from .blocks import Axis, Block, Body, Chapter, Chart, Charts, Line, Replay, Table, Text
+from .problem import shaded
+from .wording import plural
+
+TIME = Axis("time", "s")
+
+
+@final
+@dataclass(frozen=True)
+class Run:
+    """One run with its law's label and a key safe in file names."""
+
+    key: str
+    label: str
+    case: Mapping[str, Any]
+    data: Mapping[str, Any]
+    record: Record
+
+    def array(self, role: str) -> Array | None:
+        """Array in this role, if the run has it."""
+        name = self.data["arrays"].get(role)
+        return None if name is None else self.record.array(name)
+
+    @property
+    def time(self) -> Array:
+        """Times, (n,), s."""
+        return self.record.array(self.data["arrays"]["time"])
+
+
+def runs_of(record: Record) -> tuple[Run, ...]:
+    """Every run of every case; the run's label is added where a law has several."""
+    found = []
+    for i, case in enumerate(record.sections.get("cases", ())):
+        runs = case.get("runs", ())
+        for j, run in enumerate(runs):
+            label = case["label"] if len(runs) == 1 else f"{case['label']}, {run['label']}"
+            found.append(Run(f"{i + 1}" if len(runs) == 1 else f"{i + 1}-{j + 1}", label, case, run, record))
+    return tuple(found)
+
+
+def _components(run: Run, role: str, names: tuple[str, ...]) -> tuple[Line, ...]:
+    values = run.array(role)
+    if values is None:
+        return ()
+    return tuple(Line(name, run.time, values[:, i], colour=i) for i, name in enumerate(names))
+
+
+def _reach(charts: list[tuple[Line, ...]]) -> tuple[float, float] | None:
+    """A common range of y, so that neighbouring figures compare at a glance."""
+    values = [line.y for lines in charts for line in lines]
+    if len(charts) < 2 or not values:
+        return None
+    low, high = min(float(v.min()) for v in values), max(float(v.max()) for v in values)
+    pad = 0.04 * (high - low) or 1.0
+    return (low - pad, high + pad)
+
+
+def _beside(
+    record: Record, key: str, what: str, y: Axis, lines: list[tuple[Run, tuple[Line, ...]]]
+) -> Iterator[Chart]:
+    present = [(run, group) for run, group in lines if group]
+    reach = _reach([group for _, group in present])
+    for run, group in present:
+        alt = f"{what} of {run.label} over time, {plural(len(group), 'line')}, thruster windows shaded."
+        yield Chart(f"{key}-{run.key}", f"{what}: {run.label}", TIME, y, group, alt, shaded(record), reach)
+
+
+def metrics_table(runs: tuple[Run, ...]) -> Table | None:
+    """One row per run, one column per metric."""
+    columns: dict[str, tuple[str, str]] = {}
+    for run in runs:
+        for q in run.data["metrics"]:
+            columns.setdefault(q["name"], (q.get("label") or q["name"], q.get("unit", "")))
+    if not columns:
+        return None
+    rows = tuple({"run": run.label} | {q["name"]: q for q in run.data["metrics"]} for run in runs)
+    heads = (("run", "Run", ""), *((name, label, unit) for name, (label, unit) in columns.items()))
+    return Table("runs", "What the runs came to", heads, rows)
+
+
+def torque_chapter(record: Record) -> Chapter | None:
+    """Applied torque, law beside law on one scale, and the numbers."""
+    runs = runs_of(record)
+    table = metrics_table(runs)
+    axes = ("x", "y", "z")
+    applied = list(
+        _beside(
+            record,
+            "torque",
+            "Applied torque g u",
+            Axis("g u", "N m"),
+            [(r, _components(r, "torque", axes)) for r in runs],
+        )
+    )
+    bounds = _certified(record, "torque_bound", ": certified bound")
+    if bounds:
+        alt = "Certified bounds on the applied torque over time."
+        applied.append(
+            Chart(
+                "torque-bound",
+                "Certified torque bounds",
+                TIME,
+                Axis("bound", "N m"),
+                tuple(bounds),
+                alt,
+                shaded(record),
+            )
+        )
+    commanded = list(
+        _beside(
+            record,
+            "command",
+            "Commanded torque u",
+            Axis("u", "N m"),
+            [(r, _components(r, "command", axes)) for r in runs],
+        )
+    )
+    blocks: list[Block] = [table] if table else []
+    blocks += [Charts(tuple(c)) for c in (applied, commanded) if c]
+    for run in runs:
+        blocks.extend(Text(f"{run.label}: {note}", "note") for note in run.data.get("notes", ()))
+    return Chapter("torque", "Torque", tuple(blocks)) if blocks else None
+
+
+def filter_chapter(record: Record) -> Chapter | None:
+    """R and k along the runs, R beside its certified floor."""
+    runs = runs_of(record)
+    charts: list[Chart] = []
+    for state, unit, words in (
+        ("R", "s", "Filter state R and its certified floor"),
+        ("k", "1/s", "Adaptive scaling k"),
+    ):
+        lines = []
+        for i, run in enumerate(runs):
+            name = run.data["arrays"].get("controller", {}).get(state)
+            if name is not None:
+                lines.append(Line(run.label, run.time, record.array(name), colour=i))
+        if state == "R":
+            lines += _certified(record, "filter_floor", ": certified floor")
+        if lines:
+            alt = f"{words} over time, {plural(len(lines), 'line')}."
+            charts.append(
+                Chart(
+                    f"state-{state.lower()}",
+                    words,
+                    TIME,
+                    Axis(state, unit),
+                    tuple(lines),
+                    alt,
+                    shaded(record),
+                )
+            )
+    charts += _other_states(record, runs)
+    return Chapter("filter", "Filter and scaling", (Charts(tuple(charts)),)) if charts else None
+
+
+def _certified(record: Record, role: str, suffix: str = "") -> list[Line]:
+    """Collect the certified curves of one role, one per law that has it, in the law's colour, dashed."""
+    lines = []
+    for i, case in enumerate(record.sections.get("cases", ())):
+        for certificate in case.get("certificates", ()):
+            names = certificate.get("arrays", {})
+            if role in names:
+                t, values = record.array(names["time"]), record.array(names[role])
+                lines.append(Line(case["label"] + suffix, t, values, colour=i, dashed=True))
+    return lines
+
+
+def _other_states(record: Record, runs: tuple[Run, ...]) -> Iterator[Chart]:
+    for run in runs:
+        for i, (state, name) in enumerate(sorted(run.data["arrays"].get("controller", {}).items())):
+            if state in {"R", "k"}:
+                continue
+            values = record.array(name).reshape(len(run.time), -1)
+            lines = tuple(
+                Line(f"{state} {j + 1}", run.time, values[:, j], colour=j) for j in range(values.shape[1])
+            )
+            title = f"Controller state {state}: {run.label}"
+            yield Chart(
+                f"other-{run.key}-{i}", title, TIME, Axis(state), lines, f"{title} over time.", shaded(record)
+            )
+
+
+def attitude_chapter(record: Record) -> Chapter | None:
+    """The replay, then quaternion, rate and certified envelopes."""
+    runs = runs_of(record)
+    quaternion = [(r, _components(r, "quaternion", ("β₀", "β₁", "β₂", "β₃"))) for r in runs]
+    rate = [(r, _components(r, "rate", ("ω₁", "ω₂", "ω₃"))) for r in runs]
+    attitude = [
+        *_beside(record, "quaternion", "Attitude", Axis("β"), quaternion),
+        *_envelopes(record, "angle"),
+    ]
+    rates = [*_beside(record, "rate", "Rate", Axis("ω", "rad/s"), rate), *_envelopes(record, "rate")]
+    blocks: list[Block] = []
+    bodies = _bodies(record, runs)
+    if bodies:
+        inertia = record.sections.get("scenario", {}).get("inertia")
+        blocks.append(Replay(bodies, shaded(record), inertia))
+    blocks += [Charts(tuple(group)) for group in (attitude, rates) if group]
+    return Chapter("attitude", "Attitude and rate", tuple(blocks)) if blocks else None
+
+
+def _envelopes(record: Record, what: str) -> Iterator[Chart]:
+    words = {
+        "angle": ("Certified bound on the error angle", "rad"),
+        "rate": ("Certified bound on the rate", ""),
+    }[what]
+    lines = _certified(record, f"{what}_bound")
+    if lines:
+        yield Chart(
+            f"bound-{what}",
+            words[0],
+            TIME,
+            Axis("bound", words[1]),
+            tuple(lines),
+            f"{words[0]} over time.",
+            shaded(record),
+        )
+
+
+def _bodies(record: Record, runs: tuple[Run, ...]) -> tuple[Body, ...]:
+    found = []
+    for run in runs:
+        attitude = run.array("quaternion")
+        if attitude is not None:
+            found.append(Body(run.label, run.time, attitude, run.array("torque")))
+    for optimum in record.sections.get("optimum", ()):
+        names = optimum.get("arrays", {})
+        if "quaternion" in names:
+            torque = record.array(names["torque"]) if "torque" in names else None
+            found.append(
+                Body(optimum["label"], record.array(names["time"]), record.array(names["quaternion"]), torque)
+            )
+    return tuple(found)
+
+
+def storage_chapter(record: Record) -> Chapter | None:
+    """V and V' with their bounds along each run."""
+    charts = []
+    for run in runs_of(record):
+        for role, words, unit in (
+            ("storage", "Lyapunov function V", ""),
+            ("storage_rate", "Derivative V'", "1/s"),
+        ):
+            values, bound = run.array(role), run.array(f"{role}_bound")
+            if values is None:
+                continue
+            lines = [Line(words, run.time, values)]
+            if bound is not None:
+                lines.append(Line("its bound", run.time, bound, colour=1, dashed=True))
+            log = role == "storage" and bool(np.all(values > 0))
+            alt = f"{words} of {run.label} along the run{' with its bound' if bound is not None else ''}."
+            title = f"{words}: {run.label}"
+            axis = Axis("V" if role == "storage" else "V'", unit, log)
+            charts.append(
+                Chart(
+                    f"{role.replace('_', '-')}-{run.key}",
+                    title,
+                    TIME,
+                    axis,
+                    tuple(lines),
+                    alt,
+                    shaded(record),
+                )
+            )
+    return Chapter("storage", "Lyapunov function", (Charts(tuple(charts)),)) if charts else None

@@ -1,0 +1,58 @@
+"""Names made safe and short, and the words for what the record abbreviates."""
+
+from __future__ import annotations
+
+import re
+
+LONGEST_LABEL = 60
+"""Characters of a name kept inside a figure; the full name stands in the text."""
+
+
+def short(text: str, most: int = LONGEST_LABEL) -> str:
+    """One line, at most `most` characters."""
+    line = " ".join(text.split())
+    return line if len(line) <= most else line[: most - 1] + "…"
+
+
+def slug(text: str, index: int) -> str:
+    """Name a file or an anchor: letters, digits and dashes, with a number so that none collide."""
+    safe = re.sub(r"[^a-z0-9]+", "-", text.lower().encode("ascii", "ignore").decode())[:30].strip("-")
+    return f"{safe}-{index}" if safe else str(index)
+
+
+def visible(text: str) -> str:
+    """Replace control characters by their pictures, so that they are seen and harm nothing.
+
+    Newline and tab stay; bidirectional controls are shown as what they are.
+    """
+    return "".join(_picture(c) for c in text.replace("\r\n", "\n"))
+
+
+_BIDIRECTIONAL = {"\u202a": "LRE", "\u202b": "RLE", "\u202c": "PDF", "\u202d": "LRO", "\u202e": "RLO"} | {
+    "\u2066": "LRI",
+    "\u2067": "RLI",
+    "\u2068": "FSI",
+    "\u2069": "PDI",
+    "\u200e": "LRM",
+    "\u200f": "RLM",
+}
+
+
+def _picture(c: str) -> str:
+    code = ord(c)
+    if c in "\n\t":
+        return c
+    if code < 0x20:
+        return chr(0x2400 + code)
+    if code == 0x7F:
+        return "\u2421"
+    if c in _BIDIRECTIONAL:
+        return f"‹{_BIDIRECTIONAL[c]}›"
+    if 0x80 <= code < 0xA0 or c in "\ufffe\uffff\u2028\u2029\u0085":
+        return "\ufffd"
+    return c
+
+
+def plural(count: int, word: str) -> str:
+    """Count and word: "1 claim", "3 claims"."""
+    return f"{count} {word}" if count == 1 else f"{count} {word}s"

@@ -1,0 +1,147 @@
+"""The kit: tables, figures and the article that shows them all."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from ..content.blocks import (
+    Card,
+    Cards,
+    Chapter,
+    Equations,
+    Facts,
+    Group,
+    Table,
+    Verdicts,
+    charts_of,
+    tables_of,
+)
+from ..content.problem import problem_chapter
+from ..content.verdicts import answer
+from ..content.wording import short
+from ..record import Record
+from .latex import cell, text, unit
+from .pgfplots import plots
+
+PREAMBLE = r"""\documentclass{article}
+\usepackage[T1]{fontenc}
+\usepackage{textcomp}
+\IfFileExists{lmodern.sty}{\usepackage{lmodern}}{}
+\usepackage[margin=25mm]{geometry}
+\usepackage{amsmath}
+\usepackage{bm}
+\usepackage{booktabs}
+\usepackage{graphicx}
+\usepackage{pgfplots}
+\pgfplotsset{compat=1.9}
+\setlength{\emergencystretch}{3em}
+"""
+
+
+def paper_files(
+    record: Record, chapters: tuple[Chapter, ...], drawings: Mapping[str, bytes]
+) -> dict[str, bytes]:
+    """Every file of the kit by path inside it; `drawings` holds "<key>.svg" and "<key>.pdf"."""
+    tables = {"verdicts": verdict_table(chapters)} | _laws(chapters)
+    tables |= {t.key: booktabs(t) for t in tables_of(chapters)}
+    tables |= _scenario(record)
+    files = {f"tables/{name}.tex": body for name, body in tables.items() if body}
+    for chart in charts_of(chapters):
+        files |= {f"figures/{name}": body for name, body in plots(chart, "figures").items()}
+    equations = _equations(chapters)
+    if equations:
+        files["equations.tex"] = equations
+    files["kit.tex"] = _article(
+        record, chapters, tuple(n for n, body in tables.items() if body), bool(equations)
+    )
+    out = {name: body.encode("ascii") for name, body in files.items()}
+    return out | {f"figures/{name}": data for name, data in drawings.items()}
+
+
+def booktabs(table: Table) -> str:
+    """One table as a booktabs tabular, to be put into the paper's own float."""
+    share = 0.94 / max(len(table.columns), 1)
+    columns = "".join(rf"p{{{share - 0.018:.3f}\linewidth}}" for _ in table.columns)
+    heads = [text(label) + (f" (${unit(u)}$)" if u else "") for _, label, u in table.columns]
+    rows = [[cell(row.get(key), u) for key, _, u in table.columns] for row in table.rows]
+    return tabular(columns, heads, rows, tuple(text(n) for n in table.notes))
+
+
+def tabular(columns: str, heads: list[str], rows: list[list[str]], notes: tuple[str, ...] = ()) -> str:
+    """Rules, heads and rows; every cell ragged right and begun with a group, so that [ and * stay text."""
+    lines = [rf"\begin{{tabular}}{{@{{}}{columns}@{{}}}}", r"\toprule", _row(heads, bold=True), r"\midrule"]
+    lines += [_row(row) for row in rows]
+    lines += [r"\bottomrule", r"\end{tabular}"]
+    return "\n".join([*lines, *(rf"\par\smallskip{{\footnotesize {n}}}" for n in notes)]) + "\n"
+
+
+def _row(cells: list[str], *, bold: bool = False) -> str:
+    weight = r"\bfseries " if bold else ""
+    return " & ".join(rf"\raggedright {weight}{{}}{c}" for c in cells) + r" \tabularnewline"
+
+
+def verdict_table(chapters: tuple[Chapter, ...]) -> str:
+    """Claims, verdicts and margins."""
+    groups: tuple[Group, ...] = ()
+    for chapter in chapters:
+        for block in chapter.blocks:
+            groups = block.groups if isinstance(block, Verdicts) else groups
+    rows = []
+    for group in groups:
+        for claim in group.claims:
+            margins = "; ".join(cell(q) for q in claim["margins"]) or "--"
+            verdict = cell({"verdict": claim["verdict"]})
+            rows.append([text(short(group.label, 300)), text(short(claim["title"], 300)), verdict, margins])
+    widths = ("0.24", "0.33", "0.16", "0.19")
+    columns = "".join(rf"p{{{w}\linewidth}}" for w in widths)
+    return tabular(columns, ["Of", "Claim", "Verdict", "Margin"], rows) if rows else ""
+
+
+def _laws(chapters: tuple[Chapter, ...]) -> dict[str, str]:
+    cards: tuple[Card, ...] = ()
+    for chapter in chapters:
+        for block in chapter.blocks:
+            cards = block.cards if isinstance(block, Cards) else cards
+    names = {
+        q["name"]: (q.get("label") or q["name"], q.get("unit", "")) for card in cards for q in card.numbers
+    }
+    if not names:
+        return {}
+    columns = (("law", "Law", ""), *((name, label, u) for name, (label, u) in names.items()))
+    rows = tuple({"law": card.label} | {q["name"]: q for q in card.numbers} for card in cards)
+    return {"laws": booktabs(Table("laws", "Laws", columns, rows))}
+
+
+def _scenario(record: Record) -> dict[str, str]:
+    chapter = problem_chapter(record)
+    rows = [r for b in (chapter.blocks if chapter else ()) if isinstance(b, Facts) for r in b.rows]
+    if not rows:
+        return {}
+    body = [[text(label), cell(value)] for label, value in rows]
+    return {"scenario": tabular(r"p{0.36\linewidth}p{0.56\linewidth}", ["Given", "Value"], body)}
+
+
+def _equations(chapters: tuple[Chapter, ...]) -> str:
+    held = [e for c in chapters for b in c.blocks if isinstance(b, Equations) for e in b.equations]
+    return "".join(f"% {e.title}\n\\begin{{equation}}\n{e.latex}\n\\end{{equation}}\n" for e in held)
+
+
+def _article(record: Record, chapters: tuple[Chapter, ...], tables: tuple[str, ...], equations: bool) -> str:
+    origin = record.document["provenance"]
+    head = [
+        PREAMBLE,
+        rf"\title{{{text(record.document['title'])}}}",
+        rf"\author{{{text(origin.get('author', ''))}}}",
+        rf"\date{{{text(origin['date'])}}}",
+        r"\begin{document}",
+        r"\maketitle",
+        rf"\noindent {text(answer(record))} Record \texttt{{{text(record.sha256)}}}.",
+        r"\input{equations}" if equations else "",
+    ]
+    body = [rf"\begin{{center}}\small\input{{tables/{name}}}\end{{center}}" for name in tables]
+    for chart in charts_of(chapters):
+        caption = rf"\par\smallskip{{\small {text(short(chart.title, 300))}}}\par\bigskip"
+        drawn = rf"\includegraphics[width=0.48\linewidth]{{figures/{chart.key}.pdf}}"
+        plotted = rf"\begin{{minipage}}[b]{{0.48\linewidth}}\input{{figures/{chart.key}.tex}}\end{{minipage}}"
+        body.append(rf"\par\noindent {drawn}\hfill {plotted}{caption}")
+    return "\n".join([*head, *body, r"\end{document}", ""])

@@ -1,0 +1,139 @@
+"""The PDF: every number of the record, contents, page numbers, the same bytes; hostile names as text."""
+
+import io
+import subprocess
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hostile_text import HOSTILE
+from intermit.reports import Record
+from intermit.reports.build import DRAWN_POINTS, report_files
+from intermit.reports.content.blocks import charts_of
+from intermit.reports.content.budget import thin
+from intermit.reports.content.chapters import chapters
+from intermit.reports.content.drawn import drawings, pdf_figures
+from intermit.reports.content.printable import printable
+from intermit.reports.numbers import write
+from intermit.reports.pdf import pdf_document
+from intermit.reports.values import thaw
+from outside_tools import need
+from synthetic_record import make, respoken
+
+pypdf = pytest.importorskip("pypdf")
+
+
+def pdf_of(record: Record) -> bytes:
+    contents = chapters(record)
+    return pdf_document(record, contents, drawings(thin(charts_of(contents), DRAWN_POINTS)))
+
+
+def squeezed(text: str) -> str:
+    """Without what a line break may add or take away."""
+    return "".join(c for c in text if not c.isspace() and c not in "\u200b\u00ad\ufe0f")
+
+
+@pytest.fixture(scope="module")
+def document(record: Record) -> bytes:
+    return pdf_of(record)
+
+
+@cache
+def pages(document: bytes) -> list[str]:
+    return [page.extract_text() for page in pypdf.PdfReader(io.BytesIO(document)).pages]
+
+
+def quantities(value: Any) -> list[dict[str, Any]]:
+    if isinstance(value, dict):
+        here = [value] if {"name", "low", "high"} <= set(value) else []
+        return here + [q for v in value.values() for q in quantities(v)]
+    return [q for v in value for q in quantities(v)] if isinstance(value, list) else []
+
+
+def test_every_number_of_the_record_is_in_the_text(record: Record, document: bytes) -> None:
+    text = squeezed("".join(pages(document)))
+    for q in quantities(thaw(record.sections)):
+        assert squeezed(write(q, unit=False).text) in text, q
+
+
+def test_the_first_page_has_title_answer_date_hash_contents_and_verdicts(
+    record: Record, document: bytes
+) -> None:
+    first = squeezed(pages(document)[0])
+    for words in (
+        record.document["title"],
+        "10 claims asked",
+        "2021-02-01",
+        record.sha256,
+        "R stays positive",
+        "REFUTED",
+    ):
+        assert squeezed(words) in first
+    assert "Wherethiscomesfrom" in first
+
+
+def test_pages_are_numbered(document: bytes) -> None:
+    texts = pages(document)
+    for i, text in enumerate(texts):
+        assert f"page{i + 1}of{len(texts)}" in squeezed(text)
+
+
+def test_figures_are_vectors(document: bytes) -> None:
+    reader = pypdf.PdfReader(io.BytesIO(document))
+    assert sum(len(page.images) for page in reader.pages) == 0
+
+
+def test_same_record_same_bytes(record: Record, document: bytes) -> None:
+    assert pdf_of(make()) == document
+    assert str(pypdf.PdfReader(io.BytesIO(document)).metadata["/CreationDate"]).startswith("D:20210201")
+
+
+def test_printed_figures_repeat(record: Record) -> None:
+    charts = charts_of(chapters(record))[:2]
+    assert drawings(charts) == drawings(charts)
+    assert pdf_figures(drawings(charts)) == pdf_figures(drawings(charts))
+
+
+def test_the_users_matplotlib_settings_change_nothing(record: Record) -> None:
+    import matplotlib
+
+    charts = charts_of(chapters(record))[:1]
+    plain = drawings(charts)
+    with matplotlib.rc_context({"font.size": 30, "axes.facecolor": "red", "svg.fonttype": "none"}):
+        assert drawings(charts) == plain
+
+
+def test_hostile_names_are_set_as_text(record: Record) -> None:
+    texts = {k: v for k, v in HOSTILE.items() if k not in {"long", "words"}}
+    text = squeezed("".join(pages(pdf_of(respoken(record, *texts.values())))))
+    for kind, hostile in texts.items():
+        if kind != "right to left":  # the order of extraction differs
+            assert squeezed(printable(hostile.encode("utf-8", "replace").decode())) in text, kind
+    assert "‹RLO›" in text
+
+
+def test_ten_thousand_characters_fit(record: Record) -> None:
+    names = (*["quiet"] * 50, HOSTILE["long"], *["quiet"] * 50, HOSTILE["words"])
+    assert squeezed("".join(pages(pdf_of(respoken(record, *names))))).count("x" * 1000) > 0
+
+
+def test_every_file_of_the_report_repeats() -> None:
+    one, two = report_files(make()), report_files(make())
+    assert one.keys() == two.keys()
+    assert [name for name in one if one[name] != two[name]] == []
+
+
+@pytest.mark.poppler
+def test_poppler_reads_and_draws_every_page(document: bytes, tmp_path: Path) -> None:
+    need("pdftotext")
+    path = tmp_path / "r.pdf"
+    path.write_bytes(document)
+    text = subprocess.run([need("pdftotext"), path, "-"], check=True, capture_output=True, text=True).stdout
+    assert "8 PROVED, 1 REFUTED, 1 UNDECIDED" in text
+    subprocess.run([need("pdftoppm"), "-r", "30", "-gray", path, tmp_path / "p"], check=True)
+    drawn = sorted(tmp_path.glob("p-*.pgm"))
+    assert len(drawn) == len(pages(document))
+    for page in drawn:
+        values = page.read_bytes()[-30_000:]
+        assert len(set(values)) > 8  # not blank
