@@ -228,7 +228,7 @@ def main() -> None:
         for name in tools:
             history = TorqueHistory(np.array(points), profile, controls[name], norm)
             flown = fly_again(task, history)
-            error = max(flown.attitude_error, flown.rate_error * float(task.horizon))
+            error = max(flown.terminal.attitude_error, flown.terminal.rate_error * float(task.horizon))
             median = statistics.median(times[name])
             print(f"{name:30} {norm.name:18} {median:8.3f} {history.peak:13.9f} {error:10.1e}")
         base = statistics.median(times["rockit-meco"])

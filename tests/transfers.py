@@ -8,22 +8,14 @@ from fractions import Fraction
 
 import numpy as np
 from intermit.models.rigid_body import RigidBody
-from intermit.models.schedule import Hermite, Schedule, Window, build_schedule
+from intermit.models.schedule import Hermite, Window, build_schedule
 from intermit.optim.norms import Euclidean, LargestComponent, Norm, ThrusterAxes
 from intermit.optim.problem import TransferProblem, WindowProfile, quaternion_from_axis_angle
+from problems import J1, UNIT, paper_schedule
 
-UNIT = RigidBody.from_rows([[1, 0, 0], [0, 1, 0], [0, 0, 1]])
-J1 = RigidBody.from_rows([["3.05", "0.14", "0.05"], ["0.14", "2.66", "0.12"], ["0.05", "0.12", "2.18"]])
-J2 = RigidBody.from_rows([["20", "1.2", "0.9"], ["1.2", "17", "1.4"], ["0.9", "1.4", "15"]])
 HALF_TURN_TIME = Fraction("3.2431")
 """Bilimoria and Wie (J. Guidance 16, 1993): least time of a 180 deg turn, unit inertia, unit cube torque."""
 TETRAHEDRON = ThrusterAxes.from_rows([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
-
-
-def paper_schedule() -> Schedule:
-    """g as printed: windows [8 k + 0.01, 8 k + 3.22] s."""
-    window = Window(Fraction("0.01"), Fraction("3.21"))
-    return build_schedule([window], Hermite(overrun=Fraction("0.01")), period=Fraction(8))
 
 
 def paper_transfer(

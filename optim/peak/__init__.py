@@ -1,5 +1,6 @@
 """Least peak torque through the windows: transcription, two solvers, verification, multi-start."""
 
+from .any_torque import FlownTorque, fly_torque
 from .history import TorqueHistory
 from .minimum_peak import minimum_peak
 from .nlp import NonlinearProgram
@@ -10,6 +11,7 @@ from .verify_answer import FlownHistory, fly_again
 
 __all__ = [
     "FlownHistory",
+    "FlownTorque",
     "MultiStart",
     "NonlinearProgram",
     "PeakAnswer",
@@ -21,5 +23,6 @@ __all__ = [
     "Switching",
     "TorqueHistory",
     "fly_again",
+    "fly_torque",
     "minimum_peak",
 ]

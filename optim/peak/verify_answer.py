@@ -28,6 +28,45 @@ TERMINAL_STANDARD = 1e-8
 
 @final
 @dataclass(frozen=True)
+class Excess:
+    """What a transfer leaves at its end.
+
+    Attributes
+    ----------
+    attitude_error : float
+        Rotation angle left to the target attitude (either quaternion sign), rad.
+    rate_error : float
+        |w| left, rad/s.
+    attitude, rate : float
+        What of these exceeds the tolerances asked for; the rate times the transfer time.
+    """
+
+    attitude_error: float
+    rate_error: float
+    attitude: float
+    rate: float
+
+    @property
+    def worst(self) -> float:
+        """Largest of both excesses, rad."""
+        return max(self.attitude, self.rate)
+
+
+def terminal_excess(problem: TransferProblem, end: Array) -> Excess:
+    """Measure a final state (7,) against the problem's terminal condition."""
+    angle = 2.0 * math.atan2(float(np.linalg.norm(end[1:4])), abs(float(end[0])))
+    rate = float(np.linalg.norm(end[4:]))
+    allowed = 2.0 * math.asin(float(problem.terminal.attitude))
+    return Excess(
+        attitude_error=angle,
+        rate_error=rate,
+        attitude=max(0.0, angle - allowed),
+        rate=max(0.0, rate - float(problem.terminal.rate)) * float(problem.horizon),
+    )
+
+
+@final
+@dataclass(frozen=True)
 class FlownHistory:
     """A history integrated again.
 
@@ -35,12 +74,8 @@ class FlownHistory:
     ----------
     states : (n + 1, 7)
         Quaternion and rate (rad/s) at the cell edges.
-    attitude_error : float
-        Rotation angle left to the target attitude (either quaternion sign), rad.
-    rate_error : float
-        |w| left, rad/s.
-    attitude_excess, rate_excess : float
-        What of these exceeds the tolerances asked for; the rate times the transfer time.
+    terminal : Excess
+        What is left at the end.
     outside_torque : float
         Largest torque where w = 0, N m.
     effort_excess : float
@@ -48,10 +83,7 @@ class FlownHistory:
     """
 
     states: Array
-    attitude_error: float
-    rate_error: float
-    attitude_excess: float
-    rate_excess: float
+    terminal: Excess
     outside_torque: float
     effort_excess: float
     evaluations: int
@@ -59,7 +91,7 @@ class FlownHistory:
     @property
     def terminal_excess(self) -> float:
         """Largest of both excesses, rad."""
-        return max(self.attitude_excess, self.rate_excess)
+        return self.terminal.worst
 
     @property
     def feasible(self) -> bool:
@@ -75,19 +107,12 @@ def fly_again(problem: TransferProblem, history: TorqueHistory) -> FlownHistory:
     """Integrate a torque history independently and measure what it leaves."""
     pieces = _piece_of_cells(problem, history)
     states, evaluations, _ = _integrate(problem, history, pieces)
-    end = states[-1]
-    angle = 2.0 * math.atan2(float(np.linalg.norm(end[1:4])), abs(float(end[0])))
-    rate = float(np.linalg.norm(end[4:]))
-    allowed_angle = 2.0 * math.asin(float(problem.terminal.attitude))
     closed = np.array([not piece.shape for piece in pieces])
     peak_needed = problem.norm.peak(history.base_torque[history.open]).max(initial=0.0)
     peak = max(history.peak, 1e-300)
     return FlownHistory(
         states=states,
-        attitude_error=angle,
-        rate_error=rate,
-        attitude_excess=max(0.0, angle - allowed_angle),
-        rate_excess=max(0.0, rate - float(problem.terminal.rate)) * float(problem.horizon),
+        terminal=terminal_excess(problem, states[-1]),
         outside_torque=float(np.abs(history.base_torque[closed]).max(initial=0.0)),
         effort_excess=float(peak_needed / peak - 1.0) if math.isfinite(peak) else math.inf,
         evaluations=evaluations,
@@ -127,7 +152,7 @@ def _integrate(
     """States at the edges, right-hand sides evaluated, and states at the instants of the grids."""
     from scipy.integrate import solve_ivp
 
-    keep, (state, torque, out, run) = _rate_function(problem)
+    keep, (state, torque, out, run) = rate_function(problem)
     states = [np.r_[problem.unit_attitude, problem.start_rate]]
     evaluations, sampled = 0, [np.zeros((0, 7))]
     for k, base in enumerate(history.base_torque):
@@ -167,7 +192,7 @@ def _window_function(piece: Piece) -> Callable[[float], float]:
     return window
 
 
-def _rate_function(problem: TransferProblem) -> tuple[Any, tuple[Array, Array, Array, Any]]:
+def rate_function(problem: TransferProblem) -> tuple[Any, tuple[Array, Array, Array, Any]]:
     """State rate of the body, evaluated in place through fixed buffers."""
     rate = _symbolic_rate()
     buffer, run = rate.buffer()

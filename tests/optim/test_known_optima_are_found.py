@@ -13,7 +13,8 @@ from intermit.optim.peak.guess import first_guess
 from intermit.optim.peak.mesh import build_mesh
 from intermit.optim.peak.scaling import scale
 from intermit.optim.peak.shooting import Shooting
-from transfers import HALF_TURN_TIME, UNIT, open_transfer, paper_transfer
+from problems import UNIT
+from transfers import HALF_TURN_TIME, open_transfer, paper_transfer
 
 ONE = MultiStart(starts=1)
 
