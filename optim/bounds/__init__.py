@@ -1,0 +1,1 @@
+"""Certified lower bounds of the peak torque through windows."""

@@ -1,0 +1,194 @@
+"""Convex sets of momenta K = -K, seen through their support function h(v) = max v.H over H in K.
+
+A potential whose momentum rate v satisfies h(v) <= c wherever a short path can pass differs
+between two attitudes by at most c times the travel, the integral of n where H(t) is in n(t) K.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...models.rigid_body import RigidBody, leading_minors
+from .chart import Vector, square_root
+
+Array = NDArray[np.float64]
+
+_CORNERS = np.array([[i, j, k] for i in (-1.0, 1.0) for j in (-1.0, 1.0) for k in (-1.0, 1.0)])
+_QUADRATIC = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
+
+EVALUATION_SLACK = 1e-12
+"""Relative error, generously, of every float evaluation of a support function in this package."""
+
+
+@final
+@dataclass(frozen=True)
+class TaylorBoxes:
+    """Vector polynomials v(t), t in [-1, 1]^3, one for each of n boxes.
+
+    Attributes
+    ----------
+    tables : array (n, 3, m)
+        Coefficients in the order of `exponents`: constant, three linear, six quadratic, the rest.
+    """
+
+    tables: Array
+
+    @property
+    def middle(self) -> Array:
+        """v(0), (n, 3)."""
+        return self.tables[:, :, 0]
+
+    @property
+    def linear(self) -> Array:
+        """Linear part, (n, 3 components, 3 coordinates)."""
+        return self.tables[:, :, 1:4]
+
+    def by_corners(self, momenta: MomentumSet) -> Array:
+        """Bound by convexity: the largest h of the linear part over the corners, plus the remainder."""
+        rest = np.abs(self.tables[:, :, 4:]).sum(axis=2)
+        corners = self.middle[:, None, :] + np.einsum("cj,nij->nci", _CORNERS, self.linear)
+        return np.asarray(momenta.support_above(corners).max(axis=1) + rest @ momenta.widths())
+
+    def by_square(self, metric: Array) -> Array:
+        """Bound of sqrt(v' W v) with W of shape (n, 3, 3) or (3, 3), from the square's own Taylor series.
+
+        Second-order terms of the square are formed before absolute values are taken: where a
+        potential is good, v turns but hardly changes in length, and they cancel.
+        """
+        factor = np.linalg.cholesky(metric)
+        tables = np.einsum("...ji,...jk->...ik", factor, self.tables)
+        v, d, q = tables[:, :, 0], tables[:, :, 1:4], tables[:, :, 4:10]
+        first = 2 * np.einsum("ni,nij->nj", v, d)
+        second = 2 * np.einsum("ni,nij->nj", v, q)
+        gram = np.einsum("nij,nik->njk", d, d)
+        for place, (j, k) in enumerate(_QUADRATIC):
+            second[:, place] += gram[:, j, k] * (1 if j == k else 2)
+        square = [j == k for j, k in _QUADRATIC]
+        known = np.where(square, np.maximum(second, 0.0), np.abs(second)).sum(axis=1)
+        size = np.abs(v)
+        turn = np.abs(d).sum(axis=2)
+        bend = np.abs(q).sum(axis=2)
+        tail = np.abs(tables[:, :, 10:]).sum(axis=2)
+        beyond = (2 * (size + turn + bend) * tail + tail * tail + 2 * turn * bend + bend * bend).sum(axis=1)
+        noise = 1e-13 * ((size + turn + bend + tail) ** 2).sum(axis=1)
+        total = (v * v).sum(axis=1) + np.abs(first).sum(axis=1) + known + beyond + noise
+        return np.asarray(np.sqrt(total))
+
+
+class MomentumSet(ABC):
+    """A compact convex symmetric set of momenta with 0 inside; momentum in N m s per unit of travel."""
+
+    @abstractmethod
+    def support_above(self, v: Array) -> Array:
+        """Upper bound of h(v), shape (..., 3) -> (...), up to the relative `EVALUATION_SLACK`."""
+
+    @abstractmethod
+    def support_over_boxes(self, boxes: TaylorBoxes) -> Array:
+        """Upper bound, box by box, of h over the boxes, up to the relative `EVALUATION_SLACK`."""
+
+    @abstractmethod
+    def widths(self) -> Array:
+        """Upper bounds of h along the three axes, shape (3,): |H_i| <= widths[i] in K."""
+
+    @abstractmethod
+    def fastest_rate(self) -> Fraction:
+        """Upper bound of max |J^-1 H| over H in K: turning rate for unit momentum scale."""
+
+    @abstractmethod
+    def straight_travel(self, axis: Array, angle: float) -> float:
+        """Travel of the rotation by `angle` about a fixed axis: gauge of J axis times angle (a float guess)."""
+
+    @abstractmethod
+    def size_above(self, momentum: Vector) -> Fraction:
+        """Upper bound of the gauge of a momentum: the least n with H in n K."""
+
+    @abstractmethod
+    def size_below(self, momentum: Vector) -> Fraction:
+        """Lower bound of the gauge."""
+
+    @abstractmethod
+    def size_of_rate(self, rate: Fraction) -> Fraction:
+        """Upper bound of the gauge of J w over |w| <= rate."""
+
+    @abstractmethod
+    def key(self) -> tuple[object, ...]:
+        """What the set is, for caches."""
+
+
+@final
+class UnitBall(MomentumSet):
+    """All momenta of Euclidean length at most 1, for one body."""
+
+    def __init__(self, body: RigidBody) -> None:
+        self.body = body
+        self._fastest = 1 / least_inertia_below(body)
+
+    def support_above(self, v: Array) -> Array:
+        """Euclidean length."""
+        return np.asarray(np.sqrt((v * v).sum(axis=-1)))
+
+    def support_over_boxes(self, boxes: TaylorBoxes) -> Array:
+        """Smaller of the bound by corners and the bound of the square."""
+        return np.minimum(boxes.by_corners(self), boxes.by_square(np.eye(3)))
+
+    def widths(self) -> Array:
+        """One along each axis."""
+        return np.ones(3)
+
+    def fastest_rate(self) -> Fraction:
+        """Reciprocal of the least principal inertia, rounded up."""
+        return self._fastest
+
+    def straight_travel(self, axis: Array, angle: float) -> float:
+        """Length of J axis times angle."""
+        return float(np.linalg.norm(self.body.inertia @ axis) / np.linalg.norm(axis) * angle)
+
+    def size_above(self, momentum: Vector) -> Fraction:
+        """Length, rounded up."""
+        return length_above(momentum)
+
+    def size_below(self, momentum: Vector) -> Fraction:
+        """Length, rounded down."""
+        return square_root(sum((x * x for x in momentum), Fraction(0)))[0]
+
+    def size_of_rate(self, rate: Fraction) -> Fraction:
+        """Greatest principal inertia times the rate."""
+        return greatest_inertia_above(self.body) * rate
+
+    def key(self) -> tuple[object, ...]:
+        """Only the body matters."""
+        return ("ball", self.body.exact_inertia)
+
+
+def least_inertia_below(body: RigidBody) -> Fraction:
+    """Rational lower bound of the least principal inertia, about 1e-12 relative, proved by minors."""
+    return _eigenvalue_below(body.exact_inertia, float(body.principal_inertias[0]))
+
+
+def greatest_inertia_above(body: RigidBody) -> Fraction:
+    """Rational upper bound of the greatest principal inertia, about 1e-12 relative, proved by minors."""
+    negative = tuple(tuple(-x for x in row) for row in body.exact_inertia)
+    return -_eigenvalue_below(negative, -float(body.principal_inertias[2]))
+
+
+def _eigenvalue_below(rows: tuple[tuple[Fraction, ...], ...], guess: float) -> Fraction:
+    """Rational lower bound of the least eigenvalue near the guess: A - bound I > 0, exactly."""
+    margin = abs(guess) * 2.0**-42
+    for _ in range(60):
+        bound = Fraction(guess - margin)
+        gap = [[rows[i][j] - (bound if i == j else 0) for j in range(3)] for i in range(3)]
+        if all(minor > 0 for minor in leading_minors(gap)):
+            return bound
+        margin *= 2
+    raise ArithmeticError(f"no lower bound of the least eigenvalue near {guess:g}")
+
+
+def length_above(values: tuple[Fraction, ...]) -> Fraction:
+    """Upper bound of the Euclidean length."""
+    return square_root(sum((x * x for x in values), Fraction(0)))[1]

@@ -1,0 +1,158 @@
+"""The least travel from a start attitude to the target, by either quaternion sign.
+
+Regions are chosen as small as the answer allows: a path that improves on the answer cannot leave
+the spherical ellipse of its length, and the smaller the region the better a polynomial does.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import final
+
+import numpy as np
+
+from ...models.rigid_body import RigidBody
+from .chart import Quaternion
+from .fit import Fit, RateConstraint
+from .momentum_sets import MomentumSet
+from .prove import BranchAndBound
+from .separation import WIDEST_ARC, Separation, Target, cheap_separation, estimated_travel, separation
+
+
+@final
+@dataclass(frozen=True)
+class PathOptions:
+    """Effort of a path bound.
+
+    Attributes
+    ----------
+    degree : int or None
+        Degree of the potentials; None chooses 5 to 7 by the size of the region.
+    tolerance : float
+        What branch and bound may lose.
+    """
+
+    degree: int | None = None
+    tolerance: float = 8e-4
+
+    def __post_init__(self) -> None:
+        if self.degree is not None and not 1 <= self.degree <= 9:
+            raise ValueError(f"the degree of a potential must be 1 to 9, received {self.degree}")
+        if not 0 < self.tolerance < 1:
+            raise ValueError(f"tolerance must be in (0, 1), received {self.tolerance}")
+
+    def degree_for(self, arc_sum: float) -> int:
+        """Degree that pays for a region of that arc sum (rad)."""
+        if self.degree is not None:
+            return self.degree
+        return 5 if arc_sum < 1.6 else 6 if arc_sum < 2.3 else 7
+
+
+@final
+@dataclass(frozen=True)
+class PathBound:
+    """Proved least travel to the target.
+
+    Attributes
+    ----------
+    travel : Fraction
+        Every motion to the target, whichever sign, travels at least this.
+    separations : tuple of (sign, Separation or None)
+        The proof for each sign considered; None where the rotation angle alone suffices.
+    """
+
+    travel: Fraction
+    separations: tuple[tuple[int, Separation | None], ...]
+
+
+def path_bound(
+    body: RigidBody,
+    start: Quaternion,
+    target: Target,
+    momenta: MomentumSet,
+    constraint: RateConstraint,
+    *,
+    signs: tuple[int, ...] = (1, -1),
+    options: PathOptions | None = None,
+) -> PathBound:
+    """Least travel in a momentum set from an attitude to rest's attitude, proved."""
+    options = options or PathOptions()
+    speed = momenta.fastest_rate()
+    starts = {sign: _signed(start, sign) for sign in signs}
+    order = sorted(signs, key=lambda sign: -float(starts[sign][0]))
+    found: dict[int, Separation | None] = {}
+    least: Fraction | None = None
+    for sign in order:
+        cheap = cheap_separation(starts[sign], target, speed)
+        if least is not None and cheap >= least:
+            found[sign] = None
+            continue
+        limit = None if least is None else float(least) * 1.002
+        result = _nearest(body, starts[sign], target, momenta, constraint, options, limit)
+        travel = cheap
+        if result is not None and result.travel > cheap:
+            travel, found[sign] = result.travel, result
+        else:
+            found[sign] = None
+        least = travel if least is None else min(least, travel)
+    assert least is not None
+    return PathBound(least, tuple((sign, found[sign]) for sign in order))
+
+
+def _signed(q: Quaternion, sign: int) -> Quaternion:
+    return q if sign > 0 else (-q[0], -q[1], -q[2], -q[3])
+
+
+def _nearest(
+    body: RigidBody,
+    start: Quaternion,
+    target: Target,
+    momenta: MomentumSet,
+    constraint: RateConstraint,
+    options: PathOptions,
+    limit: float | None,
+) -> Separation | None:
+    """Proved separation on a region no larger than needed (or than `limit` asks)."""
+    speed = float(momenta.fastest_rate())
+    unit = np.array([float(c) for c in start])
+    unit /= np.linalg.norm(unit)
+    arc = 2 * np.arctan2(np.linalg.norm(unit - [1, 0, 0, 0]), np.linalg.norm(unit + [1, 0, 0, 0]))
+    if arc < 1e-9 or arc <= float(target.arc_above()):
+        return None
+    guess = momenta.straight_travel(unit[1:], 2 * arc)
+    if 2 * arc / speed >= 0.9995 * guess:
+        return None  # the rotation about a fixed axis is shortest, and the angle alone says so
+    if limit is not None:
+        guess = min(guess, limit)
+    widest = (WIDEST_ARC - 1e-3) * 2 / speed
+    least = 2 * arc / speed * (1 + 1e-3)
+    highest = max(min(guess, widest), least)
+    guess = highest
+    if limit is None:
+        for degree in (4, None, None):
+            fit = Fit(degree=degree or options.degree_for(guess * speed / 2))
+            value = estimated_travel(body, start, momenta, constraint, guess=guess, fit=fit)
+            if degree is None and 0.96 * guess < value < 0.998 * guess:
+                break
+            guess = min(max(1.015 * value, least), highest)
+    best: Separation | None = None
+    prover = BranchAndBound(tolerance=options.tolerance)
+    degree = options.degree_for(guess * speed / 2)
+    for attempt in range(2):
+        fit = Fit(degree=degree if limit is None or attempt else min(degree, 5))
+        enough = np.inf if limit is None else limit
+        found = separation(
+            body, start, target, momenta, constraint, guess=guess, fit=fit, prover=prover, enough=enough
+        )
+        if best is None or found.travel > best.travel:
+            best = found
+        if limit is not None:
+            if float(found.travel) >= limit / 1.002 or degree <= 5:
+                break
+            continue
+        if found.travel < found.reach or guess >= highest:
+            break
+        degree = options.degree_for(guess * speed / 2)
+        guess = min(1.015 * float(found.difference) / found.supremum.value, highest)
+    return best

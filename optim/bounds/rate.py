@@ -1,0 +1,99 @@
+"""How fast a potential can change: its body gradient divided by the inertia, as exact polynomials.
+
+With x the modified Rodrigues vector, phi' = grad phi . x' = v . (J w) for
+
+    v = 1/4 J^-1 [ (1 - |x|^2) g - 2 x cross g + 2 (x.g) x ],   g = grad phi,
+
+so |phi'| is at most the support function of a set of momenta taken at v.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .chart import Vector, squared_length
+from . import polynomials as P
+from .polynomials import Exponent, Polynomial
+
+Array = NDArray[np.float64]
+ExactMatrix = tuple[Vector, ...]
+
+
+def momentum_rate_polynomials(
+    potential: Polynomial, inverse_inertia: ExactMatrix, scale: Fraction
+) -> tuple[Polynomial, Polynomial, Polynomial]:
+    """Return the three components of v for a potential in the scaled coordinates x / scale, in those."""
+    gradient = [P.partial(potential, axis) for axis in range(3)]
+    x = [P.coordinate(axis) for axis in range(3)]
+    square = squared_length()
+    dot = P.total(*(P.multiplied(x[i], gradient[i]) for i in range(3)))
+    body = []
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        cross = P.total(P.multiplied(x[j], gradient[k]), P.scaled(P.multiplied(x[k], gradient[j]), -1))
+        body.append(
+            P.total(
+                P.scaled(gradient[i], 1 / scale),
+                P.scaled(P.multiplied(square, gradient[i]), -scale),
+                P.scaled(cross, -2),
+                P.scaled(P.multiplied(x[i], dot), 2 * scale),
+            )
+        )
+    rows = [P.total(*(P.scaled(body[j], inverse_inertia[i][j] / 4) for j in range(3))) for i in range(3)]
+    return rows[0], rows[1], rows[2]
+
+
+def rate_features(
+    points: Array, table: tuple[Exponent, ...], inverse_inertia: Array, scale: float
+) -> tuple[Array, Array]:
+    """Return values (n, m) and momentum rates v (n, m, 3) of the monomials at scaled points (n, 3), floats."""
+    values, gradient = _monomials(points, table)
+    gradient = gradient / scale
+    x = (scale * points)[:, None, :]
+    return values, 0.25 * _body_gradient(x, gradient) @ inverse_inertia
+
+
+def potential_rates(
+    points: Array, table: tuple[Exponent, ...], inverse_inertia: Array, scale: float, coefficients: Array
+) -> Array:
+    """Momentum rate v (n, 3) of one potential at scaled points, floats."""
+    gradient = _monomials(points, table)[1].transpose(0, 2, 1) @ coefficients / scale
+    return np.asarray(0.25 * _body_gradient(scale * points, gradient) @ inverse_inertia)
+
+
+def _monomials(points: Array, table: tuple[Exponent, ...]) -> tuple[Array, Array]:
+    """Values (n, m) and gradients (n, m, 3) of the monomials."""
+    E = np.array(table)
+    powers = np.ones((int(E.max()) + 1, *points.shape))
+    for k in range(1, len(powers)):
+        powers[k] = powers[k - 1] * points
+    factors = [powers[E[:, axis], :, axis] for axis in range(3)]
+    gradient = np.empty((3, len(E), len(points)))
+    for axis in range(3):
+        others = [factors[i] for i in range(3) if i != axis]
+        lowered = E[:, axis, None] * powers[np.maximum(E[:, axis] - 1, 0), :, axis]
+        np.multiply(lowered * others[0], others[1], out=gradient[axis])
+    return (factors[0] * factors[1] * factors[2]).T, gradient.transpose(2, 1, 0)
+
+
+def _body_gradient(x: Array, gradient: Array) -> Array:
+    """Four times the derivative along unit body rates, from the gradient in x; vectors last."""
+    square = (x * x).sum(axis=-1, keepdims=True)
+    along = (x * gradient).sum(axis=-1, keepdims=True)
+    return np.asarray((1 - square) * gradient - 2 * np.cross(x, gradient) + 2 * along * x)
+
+
+def exact_inverse(rows: ExactMatrix) -> ExactMatrix:
+    """Inverse of a 3 by 3 matrix, exactly."""
+    a = rows
+    cofactor = [[Fraction(0)] * 3 for _ in range(3)]
+    for i in range(3):
+        for j in range(3):
+            r, s, c, d = (j + 1) % 3, (j + 2) % 3, (i + 1) % 3, (i + 2) % 3
+            cofactor[i][j] = a[r][c] * a[s][d] - a[r][d] * a[s][c]
+    det = sum((a[0][k] * cofactor[k][0] for k in range(3)), Fraction(0))
+    out = [[entry / det for entry in row] for row in cofactor]
+    return tuple((row[0], row[1], row[2]) for row in out)
