@@ -12,11 +12,12 @@ from typing import final
 
 from ..norms import Euclidean
 from ..problem import TransferProblem
+from .cache import remembered
 from .fit import ConeConstraint
 from .momentum_sets import UnitBall
-from .path import PathBound, PathOptions, path_bound
+from .path import PathOptions, path_bound
 from .separation import Target
-from .travel import PeakFromTravel, WindowTravel, least_peak, momentum_peak, rounded_down
+from .travel import WindowTravel, least_peak, momentum_peak, rounded_down
 
 
 @final
@@ -91,8 +92,18 @@ def euclidean_bounds(problem: TransferProblem, options: PathOptions) -> list[Nam
     end = ball.size_of_rate(problem.terminal.rate)
     result = [NamedBound("momentum", momentum_peak(windows, ball.size_below(H0), end))]
     target = Target(problem.terminal.attitude)
-    path = path_bound(
-        problem.body, problem.attitude, target, ball, ConeConstraint(), signs=problem.signs, options=options
+    key = (ball.key(), problem.attitude, target, problem.signs, options)
+    path = remembered(
+        key,
+        lambda: path_bound(
+            problem.body,
+            problem.attitude,
+            target,
+            ball,
+            ConeConstraint(),
+            signs=problem.signs,
+            options=options,
+        ),
     )
     peak = least_peak(windows, path.travel, ball.size_above(H0), end)
     result.append(NamedBound("shortest path", peak.value))

@@ -31,7 +31,7 @@ from typing import final
 import numpy as np
 from numpy.typing import NDArray
 
-from . import polynomials as P
+from . import polynomials as poly
 from .polynomials import Polynomial
 
 Array = NDArray[np.float64]
@@ -83,14 +83,14 @@ class Chart:
         """F in the scaled coordinates x / outer: >= 0 wherever a path of half arc s can pass."""
         cos_h, sin_h = _circle_point(self.inner)
         cos_s, sin_s = _circle_point(self.outer)
-        square = P.scaled(squared_length(), self.outer**2)
-        along = P.total(*(P.coordinate(i, self.outer * c) for i, c in enumerate(self.direction)))
-        less = P.total(P.constant(1), P.scaled(square, -1))
-        more = P.total(P.constant(1), square)
-        return P.total(
-            P.scaled(P.multiplied(less, less), (cos_h / cos_s) ** 2),
-            P.scaled(P.multiplied(along, along), 4 * (sin_h / sin_s) ** 2) if self.inner else {},
-            P.scaled(P.multiplied(more, more), -1),
+        square = poly.scaled(squared_length(), self.outer**2)
+        along = poly.total(*(poly.coordinate(i, self.outer * c) for i, c in enumerate(self.direction)))
+        less = poly.total(poly.constant(1), poly.scaled(square, -1))
+        more = poly.total(poly.constant(1), square)
+        return poly.total(
+            poly.scaled(poly.multiplied(less, less), (cos_h / cos_s) ** 2),
+            poly.scaled(poly.multiplied(along, along), 4 * (sin_h / sin_s) ** 2) if self.inner else {},
+            poly.scaled(poly.multiplied(more, more), -1),
         )
 
     @cached_property
@@ -112,7 +112,7 @@ class Chart:
 
 def squared_length() -> Polynomial:
     """Return x_1^2 + x_2^2 + x_3^2."""
-    return P.total(*(P.multiplied(P.coordinate(i), P.coordinate(i)) for i in range(3)))
+    return poly.total(*(poly.multiplied(poly.coordinate(i), poly.coordinate(i)) for i in range(3)))
 
 
 def chart_between(q: Quaternion, arc_sum: float) -> Chart:
@@ -128,13 +128,19 @@ def chart_between(q: Quaternion, arc_sum: float) -> Chart:
     n = vector / size if size > 0 else np.array([1.0, 0.0, 0.0])
     if unit[0] < -1 + 1e-12:
         raise ValueError("start and target are opposite quaternions: take another chart")
-    arc = 2 * np.arctan2(np.linalg.norm(unit - [1, 0, 0, 0]), np.linalg.norm(unit + [1, 0, 0, 0]))
+    arc = arc_to_identity(unit)
     middle = np.tan(arc / 4) * n
     inner = Fraction(float(np.tan(arc / 4)))
     outer = Fraction(round(2**16 * float(np.tan(arc_sum / 4))) + 1, 2**16)
     direction = unit_vector_near(n)
     mid = (Fraction(float(middle[0])), Fraction(float(middle[1])), Fraction(float(middle[2])))
     return Chart(mid, direction, inner, max(outer, inner))
+
+
+def arc_to_identity(unit: Array) -> float:
+    """Arc from a unit quaternion (floats) to +1 on the sphere of quaternions, half the rotation angle."""
+    one = np.array([1.0, 0.0, 0.0, 0.0])
+    return float(2 * np.arctan2(np.linalg.norm(unit - one), np.linalg.norm(unit + one)))
 
 
 def unit_vector_near(n: Sequence[float] | Array) -> Vector:

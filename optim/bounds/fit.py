@@ -152,4 +152,3 @@ def spread_violations(points: Array, rates: Array, *, spacing: float, most: int 
         if not chosen or np.linalg.norm(points[chosen] - points[i], axis=1).min() > spacing:
             chosen.append(int(i))
     return chosen
-

@@ -102,7 +102,7 @@ class MomentumSet(ABC):
 
     @abstractmethod
     def straight_travel(self, axis: Array, angle: float) -> float:
-        """Travel of the rotation by `angle` about a fixed axis: gauge of J axis times angle (a float guess)."""
+        """Travel of the rotation by `angle` about a fixed axis: gauge of J axis times angle (float)."""
 
     @abstractmethod
     def size_above(self, momentum: Vector) -> Fraction:

@@ -13,7 +13,7 @@ from typing import final
 import numpy as np
 
 from ...models.rigid_body import RigidBody
-from .chart import Quaternion
+from .chart import Quaternion, arc_to_identity
 from .fit import Fit, RateConstraint
 from .momentum_sets import MomentumSet
 from .prove import BranchAndBound
@@ -117,7 +117,7 @@ def _nearest(
     speed = float(momenta.fastest_rate())
     unit = np.array([float(c) for c in start])
     unit /= np.linalg.norm(unit)
-    arc = 2 * np.arctan2(np.linalg.norm(unit - [1, 0, 0, 0]), np.linalg.norm(unit + [1, 0, 0, 0]))
+    arc = arc_to_identity(unit)
     if arc < 1e-9 or arc <= float(target.arc_above()):
         return None
     guess = momenta.straight_travel(unit[1:], 2 * arc)

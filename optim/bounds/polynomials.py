@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from functools import lru_cache
+from functools import cache, lru_cache
 from itertools import product
 from math import comb
 
@@ -24,7 +24,7 @@ CONSTANT: Exponent = (0, 0, 0)
 AXES: tuple[Exponent, Exponent, Exponent] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
 
 
-@lru_cache(maxsize=None)
+@cache
 def exponents(degree: int) -> tuple[Exponent, ...]:
     """All exponents of total degree at most `degree`, by degree: constant first, then coordinates."""
     every = [(i, j, k) for i, j, k in product(range(degree + 1), repeat=3) if i + j + k <= degree]

@@ -14,8 +14,8 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
+from . import polynomials as poly
 from .chart import Vector, squared_length
-from . import polynomials as P
 from .polynomials import Exponent, Polynomial
 
 Array = NDArray[np.float64]
@@ -26,30 +26,34 @@ def momentum_rate_polynomials(
     potential: Polynomial, inverse_inertia: ExactMatrix, scale: Fraction
 ) -> tuple[Polynomial, Polynomial, Polynomial]:
     """Return the three components of v for a potential in the scaled coordinates x / scale, in those."""
-    gradient = [P.partial(potential, axis) for axis in range(3)]
-    x = [P.coordinate(axis) for axis in range(3)]
+    gradient = [poly.partial(potential, axis) for axis in range(3)]
+    x = [poly.coordinate(axis) for axis in range(3)]
     square = squared_length()
-    dot = P.total(*(P.multiplied(x[i], gradient[i]) for i in range(3)))
+    dot = poly.total(*(poly.multiplied(x[i], gradient[i]) for i in range(3)))
     body = []
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
-        cross = P.total(P.multiplied(x[j], gradient[k]), P.scaled(P.multiplied(x[k], gradient[j]), -1))
+        cross = poly.total(
+            poly.multiplied(x[j], gradient[k]), poly.scaled(poly.multiplied(x[k], gradient[j]), -1)
+        )
         body.append(
-            P.total(
-                P.scaled(gradient[i], 1 / scale),
-                P.scaled(P.multiplied(square, gradient[i]), -scale),
-                P.scaled(cross, -2),
-                P.scaled(P.multiplied(x[i], dot), 2 * scale),
+            poly.total(
+                poly.scaled(gradient[i], 1 / scale),
+                poly.scaled(poly.multiplied(square, gradient[i]), -scale),
+                poly.scaled(cross, -2),
+                poly.scaled(poly.multiplied(x[i], dot), 2 * scale),
             )
         )
-    rows = [P.total(*(P.scaled(body[j], inverse_inertia[i][j] / 4) for j in range(3))) for i in range(3)]
+    rows = [
+        poly.total(*(poly.scaled(body[j], inverse_inertia[i][j] / 4) for j in range(3))) for i in range(3)
+    ]
     return rows[0], rows[1], rows[2]
 
 
 def rate_features(
     points: Array, table: tuple[Exponent, ...], inverse_inertia: Array, scale: float
 ) -> tuple[Array, Array]:
-    """Return values (n, m) and momentum rates v (n, m, 3) of the monomials at scaled points (n, 3), floats."""
+    """Return values (n, m) and momentum rates v (n, m, 3) of monomials at scaled points (n, 3), floats."""
     values, gradient = _monomials(points, table)
     gradient = gradient / scale
     x = (scale * points)[:, None, :]

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...models.rigid_body import RigidBody
-from . import polynomials as P
+from . import polynomials as poly
 from .chart import Chart, Quaternion, Vector, arctangent_below, chart_between, square_root
 from .fit import Fit, PotentialProgram, RateConstraint
 from .momentum_sets import MomentumSet, length_above
@@ -144,7 +144,7 @@ def estimated_travel(
     guess: float,
     fit: Fit,
 ) -> float:
-    """Return what a potential is likely to give on the region of `guess`, without proof (to choose regions)."""
+    """Return what a potential is likely to give on the region of `guess`, without proof."""
     chart, ends = _setting(start, Target(), momenta, guess)
     program = PotentialProgram(fit, chart, ends, momenta, constraint, body.inverse_inertia)
     return program.value(program.solve_sampled())
@@ -186,7 +186,7 @@ def difference_below(chart: Chart, potential: Polynomial, start: Quaternion, tar
     """Lower bound of phi(start) - max phi over the targets, in exact arithmetic."""
     x, error = chart.coordinates(start)
     high = _largest_near(chart, potential, target_coordinates(chart), _target_radius(chart, target))
-    negative = P.scaled(potential, -1)
+    negative = poly.scaled(potential, -1)
     return -_largest_near(chart, negative, x, error * 2) - high
 
 
@@ -199,16 +199,16 @@ def reach_below(chart: Chart, start: Quaternion, target: Target, speed: Fraction
 
 def cheap_separation(start: Quaternion, target: Target, speed: Fraction) -> Fraction:
     """Travel from the rotation angle alone: twice the quaternion arc over the fastest rate, rounded down."""
-    low, high = square_root(sum((c * c for c in start), Fraction(0)))
+    high = square_root(sum((c * c for c in start), Fraction(0)))[1]
+    low = square_root(sum((c * c for c in start), Fraction(0)))[0]
     vector = square_root(sum((c * c for c in start[1:]), Fraction(0)))[0]
     # tan(arc/2) = |qv| / (|q| + q0); beyond a quarter turn through the complement.
-    near, far = high + start[0], high - start[0]
+    near, far = high + start[0], low - start[0]
     if start[0] >= 0:
         arc = 2 * _arctangent_of(vector / near) if near > 0 else Fraction(0)
     else:
         above = square_root(sum((c * c for c in start[1:]), Fraction(0)))[1] / far
         arc = PI_BELOW - 2 * _arctangent_above(above)
-    del low
     return max(2 * (arc - target.arc_above()) / speed, Fraction(0))
 
 
@@ -216,8 +216,8 @@ PI_BELOW = Fraction(3141592653589793238, 10**18)
 
 
 def _arctangent_of(t: Fraction) -> Fraction:
-    if t < Fraction(99, 100):
-        return arctangent_below(_rounded(t, up=False))
+    if t < Fraction(7, 10):
+        return arctangent_below(_rounded_down(t))
     return PI_BELOW / 4 - _arctangent_above(max((1 - t) / (1 + t), Fraction(0)))
 
 
@@ -226,11 +226,13 @@ def _arctangent_above(t: Fraction) -> Fraction:
     pi_above = PI_BELOW + Fraction(1, 10**18)
     if t >= 1:
         return pi_above / 4 + (t - 1)
-    return pi_above / 4 - arctangent_below(_rounded((1 - t) / (1 + t), up=False)) if t > Fraction(1, 100) else t
+    if t <= Fraction(1, 100):
+        return t
+    return pi_above / 4 - arctangent_below(_rounded_down((1 - t) / (1 + t)))
 
 
-def _rounded(t: Fraction, *, up: bool) -> Fraction:
-    return Fraction((t * 2**48).__floor__() + int(up), 2**48)
+def _rounded_down(t: Fraction) -> Fraction:
+    return Fraction((t * 2**48).__floor__(), 2**48)
 
 
 def target_coordinates(chart: Chart) -> Vector:
@@ -244,7 +246,6 @@ def _target_radius(chart: Chart, target: Target) -> Fraction:
     if not chord:
         return chord
     length = length_above(target_coordinates(chart))
-    radius = chord * (1 + length**2)
     if length + chord > 1:
         raise ValueError("the terminal tolerance is too large for this chart")
     radius = chord
@@ -256,12 +257,12 @@ def _target_radius(chart: Chart, target: Target) -> Fraction:
 
 def _largest_near(chart: Chart, p: Polynomial, x: Sequence[Fraction], radius: Fraction) -> Fraction:
     """Upper bound of a polynomial of the scaled coordinates within a distance of x (unscaled)."""
-    local = P.shifted(p, [c / chart.outer for c in x])
+    local = poly.shifted(p, [c / chart.outer for c in x])
     size = radius / chart.outer
-    value = local.get(P.CONSTANT, Fraction(0))
+    value = local.get(poly.CONSTANT, Fraction(0))
     if not size:
         return value
-    value += length_above(tuple(local.get(e, Fraction(0)) for e in P.AXES)) * size
+    value += length_above(tuple(local.get(e, Fraction(0)) for e in poly.AXES)) * size
     return value + sum((abs(c) * size ** sum(e) for e, c in local.items() if sum(e) > 1), Fraction(0))
 
 
