@@ -15,7 +15,7 @@ from ..problem import TransferProblem
 from .cache import remembered
 from .fit import ConeConstraint
 from .momentum_sets import UnitBall
-from .path import PathOptions, path_bound
+from .path import PathBound, PathOptions, path_bound
 from .separation import Target
 from .travel import WindowTravel, least_peak, momentum_peak, rounded_down
 
@@ -93,18 +93,14 @@ def euclidean_bounds(problem: TransferProblem, options: PathOptions) -> list[Nam
     result = [NamedBound("momentum", momentum_peak(windows, ball.size_below(H0), end))]
     target = Target(problem.terminal.attitude)
     key = (ball.key(), problem.attitude, target, problem.signs, options)
-    path = remembered(
-        key,
-        lambda: path_bound(
-            problem.body,
-            problem.attitude,
-            target,
-            ball,
-            ConeConstraint(),
-            signs=problem.signs,
-            options=options,
-        ),
-    )
+
+    def compute() -> PathBound:
+        body, attitude = problem.body, problem.attitude
+        return path_bound(
+            body, attitude, target, ball, ConeConstraint(), signs=problem.signs, options=options
+        )
+
+    path = remembered(key, compute)
     peak = least_peak(windows, path.travel, ball.size_above(H0), end)
     result.append(NamedBound("shortest path", peak.value))
     return result

@@ -24,13 +24,20 @@ def test_one_window_gives_four_times_angle_over_time_squared():
 
 def test_against_quadrature():
     windows = WindowTravel(window_profile(PAPER, Fraction("27.22"), WindowProfile.GAIN))
+
+    def up(t):
+        return float(windows.up(Fraction(t)))
+
     for s in (0.5, 3.1, 9.0, 20.0):
         exact = windows.area(Fraction(s))
         knots = [float(k) for k in windows.window.knots]
-        up = lambda t: float(windows.up(Fraction(t)))  # noqa: E731
         left = quad(up, 0, s, points=[k for k in knots if 0 < k < s], limit=400)[0]
         right = quad(
-            lambda t: up(27.22) - up(t), s, 27.22, points=[k for k in knots if s < k < 27.22], limit=400
+            lambda t: float(windows.total) - up(t),
+            s,
+            27.22,
+            points=[k for k in knots if s < k < 27.22],
+            limit=400,
         )[0]
         assert np.isclose(float(exact), left + right, rtol=1e-9)
     gain = quad(lambda t: float(PAPER.gain(t)), 0, 3.22, points=[0.81, 2.41])[0]
