@@ -227,7 +227,7 @@ def _arctangent_above(t: Fraction) -> Fraction:
     if t >= 1:
         return pi_above / 4 + (t - 1)
     if t <= Fraction(1, 100):
-        return t
+        return t - t**3 / 3 + t**5 / 5
     return pi_above / 4 - arctangent_below(_rounded_down((1 - t) / (1 + t)))
 
 
