@@ -18,6 +18,10 @@ COMMANDS = (
     "check",
     "explain",
     "optimum",
+    "compare",
+    "tune",
+    "sweep",
+    "paper",
 )
 """Modules of this room that are commands, in the order of the help page; `_` is spelled `-`."""
 

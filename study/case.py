@@ -3,21 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import dataclass
 from typing import final
 
 from ..models.laws import Law
 from ..scenario import LawChoice, Scenario
 from ..verify.derivative import SampledDerivative, with_samples
 from ..verify.filter_start import filter_start_claim
-from ..verify.floor.claims import torque_quantities
-from ..verify.floor.study import FloorAnswer, answer
-from ..verify.lyapunov.claims import lyapunov_claims
+from ..verify.lyapunov import lyapunov_claims
 from ..verify.verdict import Claim, Verdict
-from .floor import floor_question, is_certified
 from .keys import CLAIM_KEYS, order_of
-from .margins import convergence_margins, with_margins
 from .run import Run, run_law
 from .sampled import reference_floor, sample_law
 
@@ -32,7 +27,6 @@ class Case:
     Attributes
     ----------
     claims : in the order of the claim keys
-    floor : R_min, convergence and torque with their certificates
     samples : sampled derivative of V; None where the law has no storage function
     run : from the scenario's initial state; None if no simulation was asked for
     notes : what a reader should know beside the claims
@@ -41,48 +35,34 @@ class Case:
     choice: LawChoice
     law: Law
     claims: tuple[Claim, ...]
-    floor: FloorAnswer
     samples: SampledDerivative | None
     run: Run | None
     notes: tuple[str, ...] = ()
 
 
-def check_case(
-    scenario: Scenario, choice: LawChoice, *, simulate: bool, margins: bool, progress: Progress
-) -> Case:
+def check_case(scenario: Scenario, choice: LawChoice, *, simulate: bool, progress: Progress) -> Case:
     """Decide every claim about one law, and run it."""
     law = choice.build()
-    claims = {claim.key: claim for claim in _filter_claims(scenario, law)}
+    progress("proof of V'", 0.0)
+    claims = {
+        claim.key: claim for claim in (*_filter_claims(scenario, law), *_lyapunov_claims(scenario, law))
+    }
+    notes: list[str] = []
     run = None
     if simulate:
         progress("simulation", 0.0)
         run = run_law(scenario, law)
-    progress("V' as a polynomial", 0.1)
-    proved = lyapunov_claims(law, scenario.body, tolerance=scenario.inertia_tolerance)
-    claims |= {claim.key: claim for claim in proved}
-    progress("floor of R", 0.3)
-    question = floor_question(scenario, law, run)
-    found = answer(question)
-    claims |= {claim.key: claim for claim in found.claims}
-    if found.torque is not None and "torque.limit" not in claims:
-        convergence = claims["convergence"]
-        quantities = (*convergence.quantities, *torque_quantities(found.torque))
-        claims["convergence"] = replace(convergence, quantities=quantities)
-    if margins and claims["convergence"].verdict is Verdict.PROVED:
-        progress("margins of convergence", 0.6)
-        certified = partial(is_certified, question)
-        quantities = tuple(convergence_margins(scenario, choice, certified))
-        claims["convergence"] = with_margins(claims["convergence"], quantities)
-    progress("samples of V'", 0.8)
-    floor = reference_floor(scenario, law, claims["filter.floor"], run)
+    progress("samples of V'", 0.5)
+    floor = reference_floor(scenario, law, claims.get("filter.floor"), run)
     samples, why_not = sample_law(
-        scenario, law, floor, lambda done: progress("samples of V'", 0.8 + 0.2 * done)
+        scenario, law, floor, lambda done: progress("samples of V'", 0.5 + 0.5 * done)
     )
-    if samples is not None:
+    if samples is None:
+        notes.append(f"V' was not sampled: {why_not}")
+    else:
         _add_samples(claims, samples)
     ordered = tuple(sorted(claims.values(), key=lambda claim: order_of(claim.key)))
-    notes = (f"V' was not sampled: {why_not}",) if why_not else ()
-    return Case(choice, law, ordered, found, samples, run, notes)
+    return Case(choice, law, ordered, samples, run, tuple(notes))
 
 
 def _filter_claims(scenario: Scenario, law: Law) -> Iterator[Claim]:
@@ -91,6 +71,13 @@ def _filter_claims(scenario: Scenario, law: Law) -> Iterator[Claim]:
     decay = law.parameters.get("lambda")
     if "R" in initial and decay is not None:
         yield filter_start_claim(scenario.schedule, decay=decay, initial=initial["R"])
+
+
+def _lyapunov_claims(scenario: Scenario, law: Law) -> tuple[Claim, ...]:
+    """Claims about the law's storage function, proved over the inertia's whole tolerance."""
+    return lyapunov_claims(
+        law, scenario.body, tolerance=scenario.inertia_tolerance, schedule=scenario.schedule
+    )
 
 
 def _add_samples(claims: dict[str, Claim], samples: SampledDerivative) -> None:

@@ -80,7 +80,7 @@ def run_check(
     cases = []
     for i, choice in enumerate(scenario.laws):
         part = _Part(tell, choice.label, 0.05 + 0.95 * i / len(scenario.laws), 0.95 / len(scenario.laws))
-        case = check_case(scenario, choice, simulate=options.simulate, margins=options.margins, progress=part)
+        case = check_case(scenario, choice, simulate=options.simulate, progress=part)
         cases.append(replace(case, claims=count(case.claims, scenario)))
     tell("done", 1.0)
     return CheckStudy(scenario, schedule, tuple(cases))

@@ -34,12 +34,19 @@ class Field(Protocol):
 @final
 @dataclass(frozen=True)
 class Tolerances:
-    """Local tolerances of every run: error norm < 1 with scale atol + rtol |y|."""
+    """Local tolerances of every run: error norm < 1 with scale atol + rtol |y|.
+
+    `phase_evaluations`: right-hand sides a run may spend on one phase before it counts as stopped;
+    a search sets it, so that one stiff candidate cannot hold up a generation.
+    """
 
     rtol: float = 1e-10
     atol: float = 1e-12
+    phase_evaluations: int | None = None
 
     def __post_init__(self) -> None:
+        if self.phase_evaluations is not None and self.phase_evaluations < 100:
+            raise ValueError(f"phase_evaluations must be at least 100, received {self.phase_evaluations}")
         if not (0 < self.rtol < 1 and self.atol > 0):
             raise ValueError(f"tolerances must be positive: rtol {self.rtol}, atol {self.atol}")
 
@@ -199,8 +206,11 @@ class Stack:
 
     @property
     def stuck(self) -> Mask:
-        """Which runs cannot go on: their step has shrunk to the spacing of times."""
-        return np.asarray(self.h < 10 * np.spacing(self.t))
+        """Which runs cannot go on: step shrunk to the spacing of times, or evaluations spent."""
+        stuck = self.h < 10 * np.spacing(self.t)
+        if self.tolerances.phase_evaluations is not None:
+            stuck |= self.evaluations >= self.tolerances.phase_evaluations
+        return np.asarray(stuck)
 
     def keep(self, kept: Mask) -> None:
         """Drop the other runs from the stack."""

@@ -32,7 +32,7 @@ def test_record_is_whole_and_its_outcome_is_the_exit_code(
     record = read_record(out)
     assert record.document["outcome"]["exit_code"] == code
     assert record.document["outcome"]["sentence"] in text
-    assert len(record.sections["cases"]) == 1
+    assert len(record.sections["cases"]) == 3
 
 
 def test_same_scenario_same_bytes(intermit: Run, write_scenario: Write, tmp_path: Path) -> None:
@@ -52,18 +52,16 @@ def test_smaller_lambda_refutes_the_sign_of_v_but_not_the_convergence_of_the_law
     claims = claims_of(out)
     assert claims["lyapunov.derivative"]["verdict"] == "REFUTED"
     assert claims["lyapunov.derivative"]["counted"] is False
-    assert claims["convergence"]["verdict"] == "PROVED"
-    assert claims["convergence"]["counted"] is True
 
 
 def test_printed_update_is_refuted_with_a_state(intermit: Run, write_scenario: Write, tmp_path: Path) -> None:
     out = tmp_path / "found.json"
-    intermit("check", write_scenario("", base="paper-as-printed-laws.toml"), "--json", out)
+    intermit("check", write_scenario(base="paper-as-printed-laws.toml"), "--json", out)
     claim = claims_of(out)["lyapunov.derivative"]
     assert claim["verdict"] == "REFUTED"
     witness = claim["witness"]
     assert isinstance(witness, dict)
-    assert witness["values"]
+    assert len(witness["values"]["beta"]) == 4
     assert witness["violation"]["low"] > 0
 
 

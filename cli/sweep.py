@@ -1,0 +1,33 @@
+"""`intermit sweep`."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from .options import Debug, JsonFile, ScenarioFile
+
+
+def run(
+    scenario: ScenarioFile,
+    law: Annotated[
+        str | None, typer.Option(metavar="LABEL", help="Law to study (default: the first).")
+    ] = None,
+    workers: Annotated[int, typer.Option(min=1, help="Processes that share the cases.")] = 2,
+    json: JsonFile = None,
+    debug: Debug = False,
+) -> int:
+    """Study schedules: peak, certified bound, floor of R and settling against duty cycle and period."""
+    del debug
+    from concurrent.futures import ProcessPoolExecutor
+
+    from ..scenario import load_scenario
+    from ..study.schedules import run_schedule_study, schedule_record
+    from .console import progress
+    from .finish import finish
+
+    loaded = load_scenario(scenario)
+    with progress(loaded.name), ProcessPoolExecutor(workers) as executor:
+        study = run_schedule_study(loaded, law=law, executor=executor)
+    return finish(schedule_record(study), json)

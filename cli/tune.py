@@ -1,0 +1,71 @@
+"""`intermit tune`."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Annotated, cast
+
+import typer
+
+from .options import Debug, InputError, JsonFile, ScenarioFile
+
+
+def run(
+    scenario: ScenarioFile,
+    settle: Annotated[
+        str | None, typer.Option(metavar="S[,S...]", help="Latest settling time, s; several with --front.")
+    ] = None,
+    peak_norm: Annotated[
+        str | None, typer.Option(metavar="NORM", help="component or euclidean: the peak to make small.")
+    ] = None,
+    law: Annotated[
+        str | None, typer.Option(metavar="LABEL", help="Law to tune (default: the first).")
+    ] = None,
+    front: Annotated[
+        bool, typer.Option("--front", help="Every law at every settling time, beside the optimum.")
+    ] = False,
+    workers: Annotated[int, typer.Option(min=1, help="Processes that share the points of a front.")] = 2,
+    seed: Annotated[int | None, typer.Option(min=0, help="Seed of the search.")] = None,
+    json: JsonFile = None,
+    debug: Debug = False,
+) -> int:
+    """Find the parameters with the least peak torque that settle in time, under certified conditions."""
+    del debug
+    if peak_norm not in (None, "component", "euclidean"):
+        raise InputError(f"--peak-norm: expected component or euclidean, received {peak_norm!r}")
+    from ..optim.comparison.equal_terms import NormName
+    from ..scenario import load_scenario
+    from ..study.tune import front_record, run_front, run_tuning, tuning_record
+    from .console import progress
+    from .finish import finish
+
+    loaded, norm = load_scenario(scenario), cast(NormName | None, peak_norm)
+    times = _times(settle)
+    with progress(loaded.name):
+        if front:
+            from concurrent.futures import ProcessPoolExecutor
+
+            if not times:
+                raise InputError("--front needs --settle with the settling times, e.g. --settle 20,28,36")
+            with ProcessPoolExecutor(workers) as executor:
+                found = run_front(loaded, times, norm=norm, executor=executor)
+            return finish(front_record(loaded, found), json)
+        if len(times) > 1:
+            raise InputError("--settle takes one time (several only with --front)")
+        tuned = run_tuning(loaded, settle=times[0] if times else None, norm=norm, law=law, seed=seed)
+    return finish(tuning_record(loaded, tuned), json, failed=tuned.law is None)
+
+
+def _times(text: str | None) -> list[Fraction]:
+    times = []
+    for word in (text or "").split(","):
+        if not word.strip():
+            continue
+        try:
+            value = Fraction(word.strip())
+        except (ValueError, ZeroDivisionError):
+            raise InputError(f"--settle: expected times in s, received {word!r}") from None
+        if value <= 0:
+            raise InputError(f"--settle: expected a time > 0 s, received {word!r}")
+        times.append(value)
+    return times

@@ -1,0 +1,107 @@
+"""The least peak of a law that settles in time, under certified conditions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import final
+
+from ...models.laws import Law
+from ..comparison.measure import LawRun, Task, run_law
+from .evaluate import EnsembleRuns
+from .search import DifferentialEvolution, SearchHistory, Trial
+from .space import SearchSpace, with_parameters
+
+Certify = Callable[[Law], str | None]
+"""Certified conditions: None if they hold for a law, else the reason why not."""
+
+ATTEMPTS = 20
+"""Candidates that are put to the certified conditions, least peak first, before giving up."""
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class Tuned:
+    """Outcome of a search: plain data, so that a worker process can send it back.
+
+    Attributes
+    ----------
+    law : the best candidate that settles and is certified, or None
+    history : every candidate tried
+    refused : (candidate, reason) of better ones that the certified conditions turned down
+    reason : why `law` is None
+    """
+
+    label: str
+    settle: Fraction
+    norm: str
+    law: Law | None
+    history: SearchHistory
+    refused: tuple[tuple[Trial, str], ...]
+    reason: str = ""
+
+    def run(self, task: Task) -> LawRun | None:
+        """Accurate run of the answer: the reported numbers come from it, not from the search."""
+        return None if self.law is None else run_law(self.label, self.law, task)
+
+
+def tune(
+    law: Law,
+    task: Task,
+    *,
+    settle: Fraction,
+    norm: str,
+    label: str = "",
+    ranges: Mapping[str, tuple[Fraction, Fraction]] | None = None,
+    method: DifferentialEvolution | None = None,
+    certify: Certify | None = None,
+    start_from_law: bool = True,
+) -> Tuned:
+    """Search a law's parameters for the least peak torque that settles by `settle`.
+
+    Parameters
+    ----------
+    law : Law
+        Its positive parameters are varied.
+    task : Task
+    settle : Fraction
+        Latest settling time, s.
+    norm : "component" or "euclidean"
+        Of the peak that is made small.
+    ranges : mapping, optional
+        (low, high) by parameter; a factor of 30 either way of the given value by default.
+    certify : callable, optional
+        Conditions the answer must meet.
+
+    Returns
+    -------
+    Tuned
+        The reported run is simulated again at full accuracy, and must settle there too. The
+        search is global but not exhaustive: an upper bound on what the law can do.
+    """
+    name = label or law.name
+    space = SearchSpace.around(law, ranges)
+    method = method if method is not None else DifferentialEvolution()
+    evaluate = EnsembleRuns(law, task, settle=settle, norm=norm)
+    history = method.run(space, evaluate, start=space.encode(law.parameters) if start_from_law else None)
+    refused: list[tuple[Trial, str]] = []
+    candidates = _distinct(history.settled_by_peak)
+    for trial in candidates[:ATTEMPTS]:
+        chosen = with_parameters(law, dict(trial.parameters))
+        reason = certify(chosen) if certify is not None else None
+        run = run_law(name, chosen, task)
+        if reason is None and (run.settling is None or run.settling > settle):
+            reason = "settles later than asked when simulated accurately"
+        if reason is None:
+            return Tuned(name, settle, norm, chosen, history, tuple(refused))
+        refused.append((trial, reason))
+    why = "no candidate settles in time" if not candidates else f"none of {len(refused)} candidates passes"
+    return Tuned(name, settle, norm, None, history, tuple(refused), why)
+
+
+def _distinct(trials: tuple[Trial, ...]) -> list[Trial]:
+    seen: dict[tuple[tuple[str, Fraction], ...], Trial] = {}
+    for trial in trials:
+        seen.setdefault(trial.parameters, trial)
+    return list(seen.values())

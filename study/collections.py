@@ -1,0 +1,76 @@
+"""Small helpers for studies that end in tables and figures."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..optim.comparison.measure import Task
+from ..reports import parts
+from ..reports.provenance import provenance
+from ..reports.record import Record
+from ..scenario import Scenario
+
+Array = NDArray[np.float64]
+
+
+@final
+@dataclass
+class Arrays:
+    """Named arrays of a record while it is put together."""
+
+    held: dict[str, Array] = field(default_factory=dict)
+
+    def put(self, name: str, values: ArrayLike) -> str:
+        """Keep an array; returns its name."""
+        if name in self.held:
+            raise ValueError(f"array {name} is there already")
+        self.held[name] = np.asarray(values, dtype=float)
+        return name
+
+
+def task_of(scenario: Scenario) -> Task:
+    """The work that a scenario's laws are compared on."""
+    return Task(
+        body=scenario.body,
+        schedule=scenario.schedule,
+        quaternion=scenario.initial.attitude,
+        rate=scenario.initial.exact_rate,
+        attitude_tolerance=scenario.tolerance.attitude,
+        rate_tolerance=scenario.tolerance.rate,
+        horizon=scenario.horizon,
+    )
+
+
+def newtons(name: str, value: float | None, digits: int = 5) -> dict[str, Any]:
+    """A torque, N m."""
+    return parts.figure_of(name, value, digits=digits, unit="N m")
+
+
+def certified_below(name: str, value: float) -> dict[str, Any]:
+    """A certified lower bound on a torque, N m: shown rounded down."""
+    return parts.quantity(name, value, unit="N m", rigorous=True, side="lower")
+
+
+def collection_record(
+    scenario: Scenario,
+    *,
+    title: str,
+    command: str,
+    sections: dict[str, Any],
+    arrays: Arrays,
+    seeds: dict[str, int] | None = None,
+    options: dict[str, Any] | None = None,
+) -> Record:
+    """Record of a study made of tables and figures."""
+    found = provenance(
+        scenario_name=scenario.name,
+        scenario_text=scenario.path.read_text(encoding="utf-8-sig"),
+        command=command,
+        seeds=seeds or {},
+        options=options or {},
+    ) | {"input_sha256": scenario.sha256}
+    return Record.create(title=title, provenance=found, sections=sections, arrays=arrays.held)
