@@ -22,6 +22,8 @@ COMMANDS = (
     "tune",
     "sweep",
     "paper",
+    "certify",
+    "recheck",
 )
 """Modules of this room that are commands, in the order of the help page; `_` is spelled `-`."""
 

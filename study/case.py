@@ -44,9 +44,7 @@ def check_case(scenario: Scenario, choice: LawChoice, *, simulate: bool, progres
     """Decide every claim about one law, and run it."""
     law = choice.build()
     progress("proof of V'", 0.0)
-    claims = {
-        claim.key: claim for claim in (*_filter_claims(scenario, law), *_lyapunov_claims(scenario, law))
-    }
+    claims = {claim.key: claim for claim in decided_claims(scenario, law)}
     notes: list[str] = []
     run = None
     if simulate:
@@ -63,6 +61,11 @@ def check_case(scenario: Scenario, choice: LawChoice, *, simulate: bool, progres
         _add_samples(claims, samples)
     ordered = tuple(sorted(claims.values(), key=lambda claim: order_of(claim.key)))
     return Case(choice, law, ordered, samples, run, tuple(notes))
+
+
+def decided_claims(scenario: Scenario, law: Law) -> tuple[Claim, ...]:
+    """Claims about one law that exact means decide, with their certificates; no samples, no simulation."""
+    return (*_filter_claims(scenario, law), *_lyapunov_claims(scenario, law))
 
 
 def _filter_claims(scenario: Scenario, law: Law) -> Iterator[Claim]:

@@ -236,7 +236,7 @@ def check_text(text: str) -> list[Finding]:
         require(bool(pairs), "there is no certificate in the file")
     except Invalid as error:
         return [Finding("file", False, (), str(error))]
-    findings = [_check_one(data, certificate) for data, certificate in pairs]
+    findings = [check_certificate(data, certificate) for data, certificate in pairs]
     stray = list(file.unread())
     if stray and all(finding.valid for finding in findings):
         reason = f"nothing reads {', '.join(stray[:5])}"
@@ -244,7 +244,8 @@ def check_text(text: str) -> list[Finding]:
     return findings
 
 
-def _check_one(data: Node, certificate: Node) -> Finding:
+def check_certificate(data: Node, certificate: Node) -> Finding:
+    """Check one certificate against the data of its part."""
     name = "unknown"
     try:
         name = certificate["kind"].text()
@@ -321,9 +322,8 @@ def check_sharp_condition(data: Node, certificate: Node) -> list[str]:
     """Decide lambda >= sqrt(a)/(2 sqrt(Jmin)), that is 4 lambda^2 J - a I >= 0 with lambda > 0."""
     lam, a = data["parameters"]["lambda"].number(), certificate["claim"]["weight"].number()
     require(lam > 0 and a > 0, "lambda and the weight a must be positive")
-    for J in inertia_vertices(data):
-        gap = [[4 * lam**2 * J[i][j] - (a if i == j else 0) for j in range(3)] for i in range(3)]
-        require(is_positive_semidefinite(gap), "4 lambda^2 J - a I is not positive semidefinite")
+    for J, pivots in _with_factors(data, certificate, 4 * lam**2, a):
+        require(all(d >= 0 for d in pivots), f"4 lambda^2 J - a I has a negative pivot, J = {show_matrix(J)}")
     return [
         f"lambda >= sqrt(a)/(2 sqrt(Jmin)) for lambda = {show(lam)} 1/s, a = {show(a)} kg m^2/s^2,",
         describe_inertia(data),
@@ -333,13 +333,34 @@ def check_sharp_condition(data: Node, certificate: Node) -> list[str]:
 @kind("paper-condition")
 def check_paper_condition(data: Node, certificate: Node) -> list[str]:
     """Decide lambda > max(1/(2 Jmin), 1/2), that is 2 lambda J - I > 0 and lambda > 1/2."""
-    del certificate
     lam = data["parameters"]["lambda"].number()
     require(lam > Fraction(1, 2), "lambda must exceed 1/2")
-    for J in inertia_vertices(data):
-        gap = [[2 * lam * J[i][j] - (1 if i == j else 0) for j in range(3)] for i in range(3)]
-        require(is_positive_definite(gap), "2 lambda J - I is not positive definite")
+    for J, pivots in _with_factors(data, certificate, 2 * lam, Fraction(1)):
+        require(all(d > 0 for d in pivots), f"2 lambda J - I is not positive definite, J = {show_matrix(J)}")
     return [f"lambda > max(1/(2 Jmin), 1/2) for lambda = {show(lam)} 1/s,", describe_inertia(data)]
+
+
+def _with_factors(
+    data: Node, certificate: Node, factor: Fraction, shift: Fraction
+) -> Iterator[tuple[Matrix, Vector]]:
+    """Yield each vertex J and the pivots D of factor J - shift I = L D L', checked."""
+    vertices, factors = inertia_vertices(data), certificate["witness"]["factors"].items()
+    require(
+        len(factors) == len(vertices), "expected one factorisation for each vertex of the box of inertias"
+    )
+    for J, place in zip(vertices, factors, strict=True):
+        (l21, l31, l32), pivots = place["lower"].vector(3), place["pivots"].vector(3)
+        L = [
+            [Fraction(1), Fraction(0), Fraction(0)],
+            [l21, Fraction(1), Fraction(0)],
+            [l31, l32, Fraction(1)],
+        ]
+        for i in range(3):
+            for j in range(i + 1):
+                product = sum((L[i][k] * pivots[k] * L[j][k] for k in range(3)), Fraction(0))
+                wanted = factor * J[i][j] - (shift if i == j else 0)
+                require(product == wanted, f"{place.path}: L D L' is not the matrix of the condition")
+        yield J, pivots
 
 
 # --- exact polynomials -------------------------------------------------------------------------
@@ -600,6 +621,21 @@ def _upper(J: Matrix | None, ring: Ring, symbols: dict[str, Poly]) -> list[Poly]
     if J is None:
         return [symbols[name] for name in INERTIA]
     return [ring.constant(J[i][j]) for i in range(3) for j in range(i, 3)]
+
+
+def law_polynomials(law: Node) -> dict[str, dict[Exponents, Fraction]]:
+    """Return torque and controller rates of a law as polynomials, and its lists of names, for comparison."""
+    lists = {
+        key: tuple(node.text() for node in law[key].items()) for key in ("parameters", "states", "signals")
+    }
+    timed = [f"{name}{end}" for name in lists["signals"] for end in ("", "_rate")]
+    names = ["b0", *ATTITUDE, "w1", "w2", "w3", *lists["states"], "g", "g_rate", *timed]
+    names += [*lists["parameters"], *INERTIA]
+    ring = Ring(names, [name for name in names if name == "R" or name in lists["parameters"]])
+    values = run(law["program"], ring, {name: ring.symbol(name) for name in names})
+    places = [*law["torque"].items(), *(law["rates"][name] for name in lists["states"])]
+    result = {str(i): pick(values, place).terms for i, place in enumerate(places)}
+    return result | {f"{key} {name}": {} for key, entries in lists.items() for name in entries}
 
 
 @dataclass(frozen=True)

@@ -8,16 +8,18 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
+from intermit.models.rigid_body import RigidBody
 from intermit.verify import checker
 from intermit.verify.certificates import Certificate, certificate_text, exact_text
+from intermit.verify.lyapunov.conditions import sharp_certificate
 
 J1 = [["3.05", "0.14", "0.05"], ["0.14", "2.66", "0.12"], ["0.05", "0.12", "2.18"]]
 
 
 def sharp(lam: str = "0.525", weight: str = "1") -> str:
-    inertia = [[Fraction(x) for x in row] for row in J1]
-    data = {"inertia": inertia, "parameters": {"lambda": Fraction(lam)}}
-    return certificate_text([Certificate("sharp-condition", data, {"weight": Fraction(weight)})])
+    return certificate_text(
+        [sharp_certificate(Fraction(lam), RigidBody.from_rows(J1), weight=Fraction(weight))]
+    )
 
 
 def edited(text: str, edit) -> str:
@@ -63,9 +65,8 @@ def test_sharp_condition_is_decided_exactly(lam, valid):
 
 def test_sharp_condition_holds_at_equality_and_not_a_hair_below():
     def text(lam: Fraction) -> str:
-        inertia = [[Fraction(4 if i == j else 0) for j in range(3)] for i in range(3)]
-        data = {"inertia": inertia, "parameters": {"lambda": lam}}
-        return certificate_text([Certificate("sharp-condition", data, {"weight": 1})])
+        body = RigidBody.from_rows([[4 if i == j else 0 for j in range(3)] for i in range(3)])
+        return certificate_text([sharp_certificate(lam, body)])
 
     assert checker.check_text(text(Fraction(1, 4)))[0].valid
     assert not checker.check_text(text(Fraction(1, 4) - Fraction(1, 10**40)))[0].valid

@@ -44,7 +44,8 @@ def test_above_the_papers_condition_everything_is_proved(law, body):
     claims = lyapunov_claims(law, body)
     assert [c.verdict for c in claims] == [Verdict.PROVED] * 5
     certificates = certificates_of(claims)
-    assert len(certificates) == 5
+    # for the adaptive law the sign and the rate rest on one certificate
+    assert len(certificates) == (5 if law.name == "persistence-filter" else 4)
     assert all(f.valid for f in checker.check_text(certificate_text(certificates)))
 
 

@@ -64,7 +64,7 @@ def certificates_of(claims: Iterable[Claim]) -> tuple[Certificate, ...]:
     for claim in claims:
         for evidence in claim.evidence:
             certificate = evidence.details.get("certificate")
-            if isinstance(certificate, Certificate) and all(certificate is not known for known in found):
+            if isinstance(certificate, Certificate) and certificate not in found:
                 found.append(certificate)
     return tuple(found)
 

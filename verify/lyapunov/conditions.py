@@ -19,7 +19,7 @@ from ..certificates.format import Certificate
 from ..checker import Matrix, Vector
 from ..rational_quantity import rational_quantity
 from ..verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict, Witness
-from .definiteness import negative_direction, quadratic, shifted
+from .definiteness import factors, negative_direction, quadratic, shifted
 from .forms import inertia_data
 
 ExactRows = Sequence[Sequence[Fraction]]
@@ -41,7 +41,12 @@ def paper_condition(lam: Fraction, body: RigidBody, *, tolerance: ExactRows | No
         return _not_met("lambda.paper", statement, PAPER, J, x, -value, "x'x - 2 lambda x'Jx")
     if lam == half:
         return _at_boundary("lambda.paper", statement, PAPER)
-    certificate = Certificate("paper-condition", _data(lam, body, tolerance), {})
+    witness_factors = [
+        factors(shifted(J, 2 * lam, Fraction(1))) for J in vertices(body.exact_inertia, tolerance)
+    ]
+    certificate = Certificate(
+        "paper-condition", _data(lam, body, tolerance), {}, {"factors": witness_factors}
+    )
     margin = rational_quantity("lambda - 1/2", lam - half, unit="1/s")
     return _claim(
         "lambda.paper", statement, Verdict.PROVED, PAPER, certificate=certificate, margins=(margin,)
@@ -59,7 +64,7 @@ def sharp_condition(
     if found is not None:
         J, x, value = found
         return _not_met("lambda.sharp", statement, SHARP, J, x, -value, "a x'x - 4 lambda^2 x'Jx", threshold)
-    certificate = Certificate("sharp-condition", _data(lam, body, tolerance), {"weight": weight})
+    certificate = sharp_certificate(lam, body, weight=weight, tolerance=tolerance)
     low = Fraction(threshold.low), Fraction(threshold.high)
     margin = rational_quantity("lambda - threshold", lam - low[1], lam - low[0], "1/s")
     return _claim(
@@ -71,6 +76,14 @@ def sharp_condition(
         margins=(margin,),
         quantities=(threshold,),
     )
+
+
+def sharp_certificate(
+    lam: Fraction, body: RigidBody, *, weight: Fraction = Fraction(1), tolerance: ExactRows | None = None
+) -> Certificate:
+    """Write the certificate of lambda >= sqrt(a)/(2 sqrt(Jmin)); one the checker refuses if that is false."""
+    lower = [factors(shifted(J, 4 * lam**2, weight)) for J in vertices(body.exact_inertia, tolerance)]
+    return Certificate("sharp-condition", _data(lam, body, tolerance), {"weight": weight}, {"factors": lower})
 
 
 def sharp_threshold(

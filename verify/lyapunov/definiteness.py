@@ -53,3 +53,15 @@ def quadratic(A: Matrix, x: Vector) -> Fraction:
 def shifted(J: Matrix, factor: Fraction, shift: Fraction) -> Matrix:
     """Return factor J - shift I."""
     return [[factor * J[i][j] - (shift if i == j else 0) for j in range(3)] for i in range(3)]
+
+
+def factors(A: Matrix) -> dict[str, Vector]:
+    """Return A = L D L' for a positive semidefinite 3 by 3 matrix: L below the diagonal, and D."""
+    work = [list(row) for row in A]
+    L = [[Fraction(int(i == j)) for j in range(3)] for i in range(3)]
+    for k in range(3):
+        for i in range(k + 1, 3):
+            L[i][k] = work[i][k] / work[k][k] if work[k][k] else Fraction(0)
+            for j in range(k + 1, 3):
+                work[i][j] -= L[i][k] * work[k][j]
+    return {"lower": [L[1][0], L[2][0], L[2][1]], "pivots": [work[k][k] for k in range(3)]}

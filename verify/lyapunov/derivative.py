@@ -83,7 +83,6 @@ def certify_decay(
         law, storage = law_form(candidate.loop), storage_form(candidate, weight=weight)
     except NotAlgebraicError as error:
         raise NoCertificateError(str(error)) from None
-    storage.pop("right_side", None)
     data = {**inertia_data(inertia, tolerance), "law": law, "parameters": parameter_data(candidate.loop)}
     claim: dict[str, Any] = {"storage": storage}
     claim["domain"] = "above floor" if candidate.floor is not None else "everywhere"

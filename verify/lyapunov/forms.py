@@ -50,8 +50,17 @@ def law_form(loop: ClosedLoop) -> dict[str, Any]:
     }
 
 
-def storage_form(candidate: Candidate, *, weight: Fraction | None = None) -> dict[str, Any]:
-    """Storage function as part of a claim; `weight` settles a free weight a.
+def storage_form(
+    candidate: Candidate, *, weight: Fraction | None = None, identity: bool = False
+) -> dict[str, Any]:
+    """Storage function as part of a claim.
+
+    Parameters
+    ----------
+    weight : Fraction or None
+        Settles a free weight a.
+    identity : bool
+        Whether the claim is about the stated right side of V', or about W.
 
     Raises
     ------
@@ -63,20 +72,17 @@ def storage_form(candidate: Candidate, *, weight: Fraction | None = None) -> dic
         symbols[FLOOR] = candidate.floor
     if candidate.weight is not None:
         symbols[WEIGHT] = candidate.weight
-    right = candidate.reference if candidate.right_side is None else candidate.right_side
-    wanted = [candidate.value, candidate.reference, right, candidate.momentum_gradient]
-    lines = write_lines(symbols, wanted)
+    other = candidate.right_side if identity else candidate.reference
+    lines = write_lines(symbols, [candidate.value, ca.SX(other), candidate.momentum_gradient])
     shift = write_lines({k: v for k, v in symbols.items() if k not in PLANT_STATES[4:]}, [candidate.shift])
     form: dict[str, Any] = {
         "shift_program": list(shift.instructions),
         "shift": list(shift.results[0]),
         "program": list(lines.instructions),
         "value": lines.results[0][0],
-        "reference": lines.results[1][0],
-        "momentum_gradient": list(lines.results[3]),
+        "right_side" if identity else "reference": lines.results[1][0],
+        "momentum_gradient": list(lines.results[2]),
     }
-    if candidate.right_side is not None:
-        form["right_side"] = lines.results[2][0]
     if candidate.weight is not None and weight is not None:
         form["weight"] = weight
     return form

@@ -29,8 +29,7 @@ def identity_certificate(candidate: Candidate) -> tuple[Certificate, tuple[str, 
     """
     if candidate.right_side is None:
         raise ValueError(f"no closed form of V' is stated for law {candidate.loop.law.name}")
-    law, storage = law_form(candidate.loop), storage_form(candidate)
-    storage.pop("reference")
+    law, storage = law_form(candidate.loop), storage_form(candidate, identity=True)
     certificate = Certificate("lyapunov-identity", {"law": law}, {"storage": storage})
     (finding,) = checker.check_text(certificate_text([certificate]))
     if not finding.valid:

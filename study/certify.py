@@ -1,0 +1,139 @@
+"""Collect every certificate that a scenario's claims have, and compare a file's data with a scenario."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, final
+
+from ..models.closed_loop import close_loop
+from ..scenario import LawChoice, Scenario
+from ..verify.certificates import Certificate, as_text, certificate_text
+from ..verify.certificates.program import NotAlgebraicError
+from ..verify.lyapunov import certificates_of
+from ..verify.lyapunov.forms import inertia_data, law_form
+from ..verify.verdict import Claim
+from .case import decided_claims
+from .check import scenario_claims
+
+Progress = Callable[[str, float], None]
+
+
+@final
+@dataclass(frozen=True)
+class Certification:
+    """What a scenario's claims have to show.
+
+    Attributes
+    ----------
+    claims : (subject, claim) in order; the subject is a law's label or "schedule"
+    certificates : every certificate under them
+    """
+
+    claims: tuple[tuple[str, Claim], ...]
+    certificates: tuple[Certificate, ...]
+
+    @property
+    def text(self) -> str:
+        """The certificate file."""
+        return certificate_text(self.certificates)
+
+
+def certify(scenario: Scenario, progress: Progress) -> Certification:
+    """Decide the claims of a scenario by exact means and collect their certificates."""
+    claims = [("schedule", claim) for claim in scenario_claims(scenario)]
+    for i, choice in enumerate(scenario.laws):
+        progress(choice.label, i / len(scenario.laws))
+        claims += [(choice.label, claim) for claim in decided_claims(scenario, choice.build())]
+    return Certification(tuple(claims), certificates_of(claim for _, claim in claims))
+
+
+def differences(text: str, scenario: Scenario) -> tuple[str, ...]:
+    """How the data of a valid certificate file differ from a scenario's; empty if they are equal.
+
+    Every part of the file must agree with one law of the scenario in everything it says. A law is
+    compared as polynomials, so that the order of its instructions does not matter.
+    """
+    parts = json.loads(text)["parts"]
+    further = any(part["data"].keys() - set(OWN_KEYS) for part in parts)
+    known = list(_scenario_data(scenario, further=further))
+    found: list[str] = []
+    for number, part in enumerate(parts, start=1):
+        gaps = [tuple(_unequal(part["data"], data)) for data in known]
+        if not any(not gap for gap in gaps):
+            least = min(gaps, key=len, default=("the scenario has no law",))
+            found.append(f"part {number}: {', '.join(least)}")
+    return tuple(found)
+
+
+OWN_KEYS = ("inertia", "inertia_tolerance", "law", "parameters")
+"""Data that follow from the scenario at once; others are taken from its own certificates."""
+
+
+def _scenario_data(scenario: Scenario, *, further: bool) -> Iterator[Mapping[str, Any]]:
+    """Everything certificates may say of each law of a scenario, as they say it."""
+    shared = inertia_data(scenario.body.exact_inertia, scenario.inertia_tolerance)
+    for choice in scenario.laws:
+        law = choice.build()
+        data: dict[str, Any] = {**shared, "parameters": law.parameters}
+        try:
+            data["law"] = law_form(close_loop(law))
+        except NotAlgebraicError:
+            data["law"] = {"name": law.name}
+        yield data | (_other_data(scenario, choice) if further else {})
+
+
+def _other_data(scenario: Scenario, choice: LawChoice) -> dict[str, Any]:
+    """Data of further kinds of certificates, taken from those that the scenario itself has."""
+    merged: dict[str, Any] = {}
+    claims = (*scenario_claims(scenario), *decided_claims(scenario, choice.build()))
+    for certificate in certificates_of(claims):
+        merged |= {key: value for key, value in certificate.data.items() if key not in OWN_KEYS}
+    return merged
+
+
+def _unequal(stated: Mapping[str, Any], expected: Mapping[str, Any]) -> Iterator[str]:
+    """Names of the entries that the scenario does not confirm."""
+    text = as_text(expected)
+    if ("inertia_tolerance" in text) and "inertia" in stated and "inertia_tolerance" not in stated:
+        yield "inertia_tolerance (the scenario has one, the certificate none)"
+    for key, value in stated.items():
+        if key == "law":
+            if not _same_law(value, text.get("law", {})):
+                yield "law"
+        elif key == "parameters":
+            for name, number in value.items():
+                if not _same(number, text["parameters"].get(name)):
+                    yield f"parameters.{name}"
+        elif not _same(value, text.get(key)):
+            yield key
+
+
+def _same(left: Any, right: Any) -> bool:
+    """Whether two nested values hold the same exact numbers and text."""
+    from ..verify.checker import Invalid, exact
+
+    if isinstance(left, Mapping) and isinstance(right, Mapping):
+        return left.keys() == right.keys() and all(_same(left[key], right[key]) for key in left)
+    if isinstance(left, list) and isinstance(right, list):
+        return len(left) == len(right) and all(map(_same, left, right))
+    if left == right:
+        return True
+    try:
+        return isinstance(left, str) and isinstance(right, str) and exact(left) == exact(right)
+    except Invalid:
+        return False
+
+
+def _same_law(left: Mapping[str, Any], right: Mapping[str, Any]) -> bool:
+    """Whether two laws are equal: the same words, or the same torque and rates as polynomials."""
+    from ..verify.checker import Invalid, Node, law_polynomials
+
+    if left == right:
+        return True
+    try:
+        first, second = (law_polynomials(Node(law, "law")) for law in (left, right))
+    except (Invalid, LookupError):
+        return False
+    return first == second
