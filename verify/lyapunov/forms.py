@@ -72,8 +72,8 @@ def storage_form(
         symbols[FLOOR] = candidate.floor
     if candidate.weight is not None:
         symbols[WEIGHT] = candidate.weight
-    other = candidate.right_side if identity else candidate.reference
-    lines = write_lines(symbols, [candidate.value, ca.SX(other), candidate.momentum_gradient])
+    other: Expression = candidate.right_side if identity else candidate.reference
+    lines = write_lines(symbols, [candidate.value, other, candidate.momentum_gradient])
     shift = write_lines({k: v for k, v in symbols.items() if k not in PLANT_STATES[4:]}, [candidate.shift])
     form: dict[str, Any] = {
         "shift_program": list(shift.instructions),
