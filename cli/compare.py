@@ -2,18 +2,30 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
+import typer
+
 from .options import Debug, JsonFile, ScenarioFile
 
 
-def run(scenario: ScenarioFile, json: JsonFile = None, debug: Debug = False) -> int:
+def run(
+    scenario: ScenarioFile,
+    law: Annotated[
+        list[str] | None,
+        typer.Option(metavar="FILE.py:CLASS[,NAME=VALUE]", help="Also a law of your own."),
+    ] = None,
+    json: JsonFile = None,
+    debug: Debug = False,
+) -> int:
     """Put every law of a scenario beside the optimum for its own settling time, with a certified bound."""
     del debug
-    from ..scenario import load_scenario
+    from ..scenario import law_from_words, load_scenario, with_laws
     from ..study.compare import comparison_record, run_comparison
     from .console import progress
     from .finish import finish
 
-    loaded = load_scenario(scenario)
+    loaded = with_laws(load_scenario(scenario), *(law_from_words(words) for words in law or ()))
     with progress(loaded.name):
         record = comparison_record(run_comparison(loaded))
     return finish(record, json)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, final
+from typing import Annotated, Literal, final
 
 import typer
 
@@ -40,3 +40,19 @@ JsonFile = Annotated[
     Path | None,
     typer.Option("--json", metavar="FILE", help="Write the whole record to FILE (arrays beside it, .npz)."),
 ]
+PeakNorm = Annotated[
+    str | None, typer.Option(metavar="NORM", help="Norm of the torque: component or euclidean.")
+]
+
+
+def norm_of(word: str | None) -> Literal["component", "euclidean"] | None:
+    """Check the word given for a norm of the torque.
+
+    Raises
+    ------
+    InputError
+        If it is not one.
+    """
+    if word is None or word == "component" or word == "euclidean":
+        return word
+    raise InputError(f"--peak-norm: expected component or euclidean, received {word!r}")

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from .options import Debug, JsonFile, ScenarioFile
+from .options import Debug, JsonFile, PeakNorm, ScenarioFile, norm_of
 
 
 def run(
@@ -14,6 +14,7 @@ def run(
     law: Annotated[
         str | None, typer.Option(metavar="LABEL", help="Law to study (default: the first).")
     ] = None,
+    peak_norm: PeakNorm = None,
     workers: Annotated[int, typer.Option(min=1, help="Processes that share the cases.")] = 2,
     json: JsonFile = None,
     debug: Debug = False,
@@ -29,5 +30,5 @@ def run(
 
     loaded = load_scenario(scenario)
     with progress(loaded.name), ProcessPoolExecutor(workers) as executor:
-        study = run_schedule_study(loaded, law=law, executor=executor)
+        study = run_schedule_study(loaded, law=law, norm=norm_of(peak_norm), executor=executor)
     return finish(schedule_record(study), json)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Annotated, cast
+from typing import Annotated
 
 import typer
 
-from .options import Debug, InputError, JsonFile, ScenarioFile
+from .options import Debug, InputError, JsonFile, PeakNorm, ScenarioFile, norm_of
 
 
 def run(
@@ -15,9 +15,7 @@ def run(
     settle: Annotated[
         str | None, typer.Option(metavar="S[,S...]", help="Latest settling time, s; several with --front.")
     ] = None,
-    peak_norm: Annotated[
-        str | None, typer.Option(metavar="NORM", help="component or euclidean: the peak to make small.")
-    ] = None,
+    peak_norm: PeakNorm = None,
     law: Annotated[
         str | None, typer.Option(metavar="LABEL", help="Law to tune (default: the first).")
     ] = None,
@@ -31,15 +29,13 @@ def run(
 ) -> int:
     """Find the parameters with the least peak torque that settle in time, under certified conditions."""
     del debug
-    if peak_norm not in (None, "component", "euclidean"):
-        raise InputError(f"--peak-norm: expected component or euclidean, received {peak_norm!r}")
-    from ..optim.comparison.equal_terms import NormName
     from ..scenario import load_scenario
     from ..study.tune import front_record, run_front, run_tuning, tuning_record
     from .console import progress
     from .finish import finish
 
-    loaded, norm = load_scenario(scenario), cast(NormName | None, peak_norm)
+    norm = norm_of(peak_norm)
+    loaded = load_scenario(scenario)
     times = _times(settle)
     with progress(loaded.name):
         if front:

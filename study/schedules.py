@@ -36,10 +36,10 @@ def run_schedule_study(
     scenario: Scenario,
     *,
     law: str | None = None,
-    norm: NormName = "component",
+    norm: NormName | None = None,
     executor: Executor | None = None,
 ) -> ScheduleStudy:
-    """Study the schedules of [study] for one law of the scenario.
+    """Study the schedules of [study] for one law of the scenario, in the norm of [optimum] or the given.
 
     Raises
     ------
@@ -57,7 +57,7 @@ def run_schedule_study(
         )
     duty = scenario.study.duty_cycles or DEFAULT_DUTY
     time = scenario.optimum.final_time or scenario.horizon
-    built, task = choice.build(), task_of(scenario)
+    built, task, norm = choice.build(), task_of(scenario), norm or scenario.optimum.norm
     cases = study_schedules(
         built, task, periods, duty, time=time, norm=norm, floor=certified_floor, executor=executor
     )

@@ -1,0 +1,98 @@
+"""compare, tune, sweep and paper: a table on stdout, a valid record in the file, one-line errors."""
+
+import json
+from pathlib import Path
+
+import pytest
+from intermit.cli.app import run
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+SMALL = f"""
+extends = "{EXAMPLES / "paper.toml"}"
+[[law]]
+type = "persistence-filter"
+label = "filter"
+[compare]
+norms = ["euclidean"]
+[tune]
+evaluations = 60
+settle = 28
+[study]
+periods = [8]
+duty_cycles = [0.4]
+"""
+
+
+@pytest.fixture
+def scenario(tmp_path):
+    path = tmp_path / "small.toml"
+    path.write_text(SMALL)
+    return path
+
+
+def record(path):
+    document = json.loads(path.read_text())
+    assert document["format"] == "intermit-record"
+    return document["sections"]
+
+
+@pytest.mark.slow
+def test_compare_orders_every_row_and_takes_a_law_of_ones_own(scenario, tmp_path, capsys):
+    out = tmp_path / "compare.json"
+    own = f"{EXAMPLES / 'momentum_pd.py'}:MomentumPD,stiffness=0.08,damping=0.4"
+    assert run(["compare", str(scenario), "--law", own, "--json", str(out)]) == 0
+    assert "certified bound" in capsys.readouterr().out
+    tables = {t["key"]: t for t in record(out)["comparison"]["tables"]}
+    assert [row["law"] for row in tables["laws"]["rows"]] == ["filter", "MomentumPD"]
+    for row in tables["terms_euclidean"]["rows"]:
+        assert row["bound"]["low"] <= row["optimum"]["high"] <= row["peak"]["high"]
+        assert row["bound"]["rigorous"]
+        assert not row["optimum"]["rigorous"]
+
+
+@pytest.mark.slow
+def test_tune_reports_parameters_and_history(scenario, tmp_path):
+    out = tmp_path / "tune.json"
+    assert run(["tune", str(scenario), "--json", str(out)]) == 0
+    tables = {t["key"]: t for t in record(out)["tuning"]["tables"]}
+    assert [row["name"] for row in tables["parameters"]["rows"]] == ["lambda", "R0"]
+    again = tmp_path / "again.json"
+    assert run(["tune", str(scenario), "--json", str(again)]) == 0
+    assert out.read_bytes() == again.read_bytes()
+
+
+@pytest.mark.slow
+def test_sweep_reports_each_case(scenario, tmp_path):
+    out = tmp_path / "sweep.json"
+    assert run(["sweep", str(scenario), "--peak-norm", "euclidean", "--json", str(out)]) == 0
+    rows = record(out)["schedule_study"]["tables"][0]["rows"]
+    assert len(rows) == 1
+    assert rows[0]["floor"]["rigorous"]
+
+
+def test_paper_reports_its_statements(tmp_path):
+    out = tmp_path / "paper.json"
+    assert run(["paper", "--no-survey", "--json", str(out)]) == 0
+    section = record(out)["paper_claims"]
+    assert len(section["tables"][0]["rows"]) == 5
+    assert {f["key"] for f in section["figures"]} >= {"gain", "body1_torque", "body2_torque", "states_R"}
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["tune", "--settle", "soon"], "--settle"),
+        (["tune", "--settle", "-1"], "> 0 s"),
+        (["tune", "--settle", "20", "--peak-norm", "sum"], "--peak-norm"),
+        (["tune", "--settle", "20,28"], "one time"),
+        (["tune", "--front"], "--front needs"),
+    ],
+)
+def test_bad_words_are_one_line(scenario, words, says, capsys):
+    if words == ["tune", "--front"]:
+        words = ["tune", "--front", "--settle", ""]
+    assert run([words[0], str(scenario), *words[1:]]) == 2
+    error = capsys.readouterr().err.strip()
+    assert says in error
+    assert "\n" not in error
