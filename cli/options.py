@@ -53,6 +53,11 @@ def norm_of(word: str | None) -> Literal["component", "euclidean"] | None:
     InputError
         If it is not one.
     """
-    if word is None or word == "component" or word == "euclidean":
-        return word
+    norms: dict[str | None, Literal["component", "euclidean"] | None] = {
+        None: None,
+        "component": "component",
+        "euclidean": "euclidean",
+    }
+    if word in norms:
+        return norms[word]
     raise InputError(f"--peak-norm: expected component or euclidean, received {word!r}")
