@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..problem import TransferProblem
 from .history import TorqueHistory
+from .mesh import build_mesh
 from .options import Refinement
 from .result import PeakAnswer, Search, Standing, Switching
 from .scp import LocalAnswer
@@ -77,6 +79,29 @@ def _plot_ready(sigma: SwitchingFunction) -> Switching:
     grid = np.linspace(0.0, 1.0, 5)
     times = (sigma.start[:, None] + sigma.length[:, None] * grid) * time
     return Switching(times, sigma.at(grid) / time, switch_times(sigma), sigma.pontryagin_residual)
+
+
+def at_rest_already(problem: TransferProblem) -> PeakAnswer:
+    """Answer of a start at rest at the target, within the tolerances: no torque, checked all the same."""
+    mesh = build_mesh(problem.window, [1] * len(problem.window.shapes))
+    control = np.zeros((mesh.size, problem.norm.control_matrix.shape[1]))
+    history = TorqueHistory(mesh.edges * float(problem.horizon), mesh.profile, control, problem.norm)
+    flown = fly_again(problem, history)
+    empty = without_history(problem, Standing.CHECKED, "", "")
+    good = flown.terminal.worst <= TERMINAL_STANDARD
+    return replace(
+        empty,
+        standing=Standing.CHECKED if good else Standing.UNDECIDED,
+        peak=0.0,
+        sign=1 if problem.unit_attitude[0] >= 0 else -1,
+        history=history,
+        flown=flown,
+        optimality_gap=0.0,
+        mesh_gap=0.0,
+        defect=0.0,
+        reason="" if good else f"the terminal condition is missed by {flown.terminal.worst:.1e}",
+        next_step="" if good else "state the start's attitude more exactly",
+    )
 
 
 def without_history(problem: TransferProblem, standing: Standing, reason: str, next_step: str) -> PeakAnswer:

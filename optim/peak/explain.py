@@ -83,7 +83,8 @@ def _travel_integral(problem: TransferProblem) -> float:
         grid = np.linspace(knots[i], knots[i + 1], 65)
         piece = list(problem.window.pieces)[i]
         s = (grid - grid[0]) / (grid[-1] - grid[0])
-        inner = sum(float(c) * s**j for j, c in enumerate(antiderivative(piece.shape))) * float(piece.length)
+        primitive = [float(c) for c in antiderivative(piece.shape)] or [0.0]
+        inner = np.polynomial.polynomial.polyval(s, primitive) * float(piece.length)
         up = used[i] + inner
         value += float(np.trapezoid(np.minimum(up, total - up), grid))
     return value * (1.0 + 1e-3)

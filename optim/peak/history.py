@@ -44,7 +44,7 @@ class TorqueHistory:
     @cached_property
     def peak(self) -> float:
         """Largest effort of any cell: the least p with effort(control) <= p on every open cell."""
-        return float(self.norm.effort(self.control[self.open]).max())
+        return float(self.norm.effort(self.control[self.open]).max(initial=0.0))
 
     @property
     def open(self) -> NDArray[np.bool_]:

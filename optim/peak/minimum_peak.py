@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..problem import TransferProblem
-from .assemble import checked, without_history
+from .assemble import at_rest_already, checked, without_history
 from .explain import arrives_by_itself, explain
 from .guess import bend, first_guess
 from .mesh import Mesh, build_mesh
@@ -76,12 +76,11 @@ def minimum_peak(
     if nothing is not None:
         standing = Standing.IMPOSSIBLE if nothing.impossible else Standing.UNDECIDED
         return without_history(problem, standing, nothing.reason, nothing.next_step)
+    if arrives_by_itself(problem):
+        return at_rest_already(problem)
     scaled = scale(problem)
     mesh = coarse_mesh(problem, refinement.cells)
     candidates, record = _search(scaled, mesh, fast, search)
-    if arrives_by_itself(problem):
-        rest = Shooting(scaled, mesh, 1 if problem.unit_attitude[0] >= 0 else -1)
-        candidates = [fast.solve(rest, np.zeros((rest.cells, scaled.control_matrix.shape[1])))]
     if not candidates:
         return replace(
             without_history(

@@ -106,7 +106,10 @@ def _cell_function(degree: int) -> Any:
         stage = x + h * (slopes @ matrix[i])
         defects.append(slopes[:, i] - right_hand_side(J, J_inverse, stage, gain * torque))
     end = x + h * (slopes @ weights)
-    return ca.Function("cell", [x, slopes, torque, h, w, J, J_inverse], [ca.vertcat(*defects), end])
+    # no derivatives by the mesh and the body: they would cost a quarter of the time
+    varying = {"is_diff_in": [True, True, True, False, False, False, False]}
+    symbols = [x, slopes, torque, h, w, J, J_inverse]
+    return ca.Function("cell", symbols, [ca.vertcat(*defects), end], varying)
 
 
 def _gauss() -> tuple[Array, Array, Array]:

@@ -114,7 +114,7 @@ def fly_again(problem: TransferProblem, history: TorqueHistory) -> FlownHistory:
         states=states,
         terminal=terminal_excess(problem, states[-1]),
         outside_torque=float(np.abs(history.base_torque[closed]).max(initial=0.0)),
-        effort_excess=float(peak_needed / peak - 1.0) if math.isfinite(peak) else math.inf,
+        effort_excess=float(peak_needed / peak - 1.0) if history.peak > 0 else float(peak_needed),
         evaluations=evaluations,
     )
 

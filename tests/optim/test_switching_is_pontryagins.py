@@ -1,0 +1,99 @@
+"""Costates and switching function: signs, switch times, and Pontryagin's condition as a residual."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from intermit.optim.norms import Euclidean, LargestComponent
+from intermit.optim.peak import MultiStart, Refinement, SequentialConvex, minimum_peak
+from intermit.optim.peak.guess import first_guess
+from intermit.optim.peak.mesh import build_mesh
+from intermit.optim.peak.optimality import control_support
+from intermit.optim.peak.scaling import scale
+from intermit.optim.peak.shooting import Shooting
+from intermit.optim.peak.switching import GAUSS_NODES, switching_function
+from transfers import HALF_TURN_TIME, TETRAHEDRON, open_transfer, paper_transfer
+
+ONE = MultiStart(starts=1)
+
+
+def solved(problem, cells):
+    mesh = build_mesh(problem.window, [cells if shape else 1 for shape in problem.window.shapes])
+    shooting = Shooting(scale(problem), mesh, 1)
+    return SequentialConvex().solve(shooting, first_guess(shooting))
+
+
+def test_bang_bang_turn_switches_once_at_half_time():
+    """One axis, unit inertia: sigma is linear in time with its zero in the middle (double integrator)."""
+    problem = open_transfer(1.0, (0, 0, 1), Fraction(4), LargestComponent())
+    answer = minimum_peak(problem, search=ONE)
+    times = [t for t, j in answer.switching.switch_times if j == 2]
+    assert times == pytest.approx([2.0], abs=1e-6)
+    t, sigma = answer.switching.times.ravel(), answer.switching.sigma[:, :, 2].ravel()
+    line = np.polynomial.Polynomial.fit(t, sigma, 1)
+    assert np.abs(line(t) - sigma).max() < 1e-9 * np.abs(sigma).max()
+    # on cells with an edge at the switch, any zero within the cells beside it is optimal
+    assert line(2.0) == pytest.approx(0.0, abs=0.05 * np.abs(sigma).max())
+
+
+@pytest.mark.parametrize("norm", [Euclidean(), LargestComponent(), TETRAHEDRON])
+def test_switching_function_is_the_derivative_of_the_end(norm):
+    """sigma integrated over a cell is the change of y . residual by that cell's control, by differences."""
+    answer = solved(paper_transfer(norm, horizon="11.22"), 5)
+    shooting, flight, y = answer.shooting, answer.flight, answer.multiplier
+    step = 1e-5 * answer.peak
+    for cell, j in ((0, 0), (4, 1), (7, 2)):
+        ends = []
+        for sign in (1, -1):
+            control = flight.control.copy()
+            control[cell, j] += sign * step
+            unclipped = shooting.fly(control)
+            ends.append(y @ unclipped.residual)
+        if isinstance(norm, (Euclidean, LargestComponent)):
+            slope = -(ends[0] - ends[1]) / (2 * step)
+            expected = -np.einsum("i,i->", y, answer.sensitivity.terminal[:, cell, j])
+            assert slope == pytest.approx(expected, rel=1e-5, abs=1e-7)
+    sigma = switching_function(answer)
+    w = np.stack([shooting.mesh.window_at(float(s))[sigma.cells] for s in GAUSS_NODES], axis=1)
+    weights = np.polynomial.legendre.leggauss(8)[1] / 2
+    integral = np.einsum("nq,nqm->nm", w * weights * sigma.length[:, None], sigma.at(GAUSS_NODES))
+    expected = -np.einsum("i,ikm->km", y, answer.sensitivity.terminal)
+    np.testing.assert_allclose(integral, expected, atol=1e-12 + 1e-10 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("norm", [Euclidean(), LargestComponent(), TETRAHEDRON])
+def test_residual_falls_with_the_mesh_and_catches_a_wrong_control(norm):
+    answers = [solved(paper_transfer(norm, horizon="19.22"), n) for n in (4, 16)]
+    residuals = [switching_function(a).pontryagin_residual for a in answers]
+    assert 0 <= residuals[1] < residuals[0] / 4
+    assert residuals[1] < 1e-3
+    fine = answers[1]
+    wrong = replace(fine, flight=replace(fine.flight, control=fine.flight.control[::-1].copy()))
+    assert switching_function(wrong).pontryagin_residual > 0.05
+    # normalised: the integral of w support(sigma) is one
+    sigma = switching_function(fine)
+    assert control_support(norm, sigma.at(np.array([0.5]))).sum() > 0
+
+
+def test_mesh_gap_estimate_covers_what_refinement_gains():
+    problem = paper_transfer(Euclidean(), horizon="19.22")
+    best = minimum_peak(problem, search=ONE, refinement=Refinement(mesh_gap=2e-7)).peak
+    for cells in (3, 6, 12):
+        answer = solved(problem, cells)
+        gained = answer.peak * answer.shooting.scaled.units.control / best - 1
+        estimate = switching_function(answer).total_loss
+        assert gained <= 1.5 * estimate + 4e-7
+        assert estimate <= 10 * gained + 4e-7
+
+
+@pytest.mark.slow
+def test_half_turn_of_the_cube_has_the_known_number_of_switches():
+    """Bilimoria and Wie's half turn has five switches."""
+    problem = open_transfer(math.pi, (0, 0, 1), HALF_TURN_TIME, LargestComponent())
+    answer = minimum_peak(problem, search=MultiStart(starts=6))
+    assert answer.peak == pytest.approx(1.0, abs=5e-4)
+    assert len(answer.switching.switch_times) == 5
