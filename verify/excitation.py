@@ -101,7 +101,7 @@ def _extreme(
     best: dict[tuple[object, ...], tuple[int, Segment]] = {}
     for segment in segments:
         # segments with the same pieces and offsets differ by a constant: only the least can hold the extreme
-        key = (segment.width, segment.lower, segment.upper)
+        key = _shape(moving, segment)
         whole = sign * moving.whole_pieces(segment)
         if key not in best or whole < best[key][0]:
             best[key] = whole, segment
@@ -112,6 +112,12 @@ def _extreme(
     instant = moving.clock.time(segment.start) + found.argument * moving.clock.time(segment.width)
     low, high = sorted((sign * found.low, sign * found.high))
     return Bound(low, high, instant), len(candidates)
+
+
+def _shape(moving: MovingIntegral, segment: Segment) -> tuple[object, ...]:
+    """What a segment's polynomial depends on, but for its constant: zero parts of g all count alike."""
+    parts = [part if moving.squares[part[0]] else None for part in (segment.lower, segment.upper)]
+    return (segment.width if any(parts) else 0, *parts)
 
 
 def _signed(moving: MovingIntegral, segment: Segment, sign: int) -> Coefficients:
