@@ -27,7 +27,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
-from math import comb, lcm
+from math import comb, isqrt, lcm
 from pathlib import Path
 from typing import Any
 
@@ -1000,12 +1000,17 @@ def _nonnegative(controls: list[int], depth: int) -> bool:
         return True
     if depth == 0 or controls[0] < 0 or controls[-1] < 0:
         return False
+    return all(_nonnegative(half, depth - 1) for half in halves(controls))
+
+
+def halves(controls: list[int]) -> tuple[list[int], list[int]]:
+    """Bernstein coefficients of both halves, by de Casteljau, times 2^degree."""
     row, left, right = controls, [], []
     for power in range(len(controls) - 1, -1, -1):
         left.append(row[0] << power)
         right.append(row[-1] << power)
         row = [x + y for x, y in pairwise(row)]
-    return _nonnegative(left, depth - 1) and _nonnegative(right[::-1], depth - 1)
+    return left, right[::-1]
 
 
 # --- schedules -----------------------------------------------------------------------------------
@@ -1019,8 +1024,8 @@ class Profile:
     shapes: list[Vector]
     period: Fraction | None
 
-    def square(self, start: Fraction, stop: Fraction) -> Form:
-        """Return g^2 on [start, stop], which must lie within one piece; zero beyond a finite table."""
+    def gain(self, start: Fraction, stop: Fraction) -> Form:
+        """Return g on [start, stop], which must lie within one piece; zero beyond a finite table."""
         offset = Fraction(0)
         if self.period is not None:
             offset = start // self.period * self.period
@@ -1042,8 +1047,7 @@ class Profile:
             sum((Fraction(comb(i, j), comb(n, j)) * local[j] for j in range(i + 1)), Fraction(0))
             for i in range(n + 1)
         ]
-        g = Form.of(controls)
-        return g * g
+        return Form.of(controls)
 
 
 def _times_affine(p: Vector, shift: Fraction, slope: Fraction) -> Vector:
@@ -1099,6 +1103,7 @@ class FloorData:
     k0: Fraction
     a: Fraction
     c: Fraction
+    greatest: Fraction
     profile: Profile
 
 
@@ -1156,7 +1161,8 @@ def require_loose(sides: dict[str, int], before: Bounds, step: FloorStep, path: 
 
 def check_step(d: FloorData, step: FloorStep, *, tail: bool) -> None:
     """Check every differential inequality on a step."""
-    G = d.profile.square(step.start, step.stop)
+    g = d.profile.gain(step.start, step.stop)
+    G = g * g
     per_second = 1 / (step.stop - step.start)
     dx = {name: p.derivative().times(per_second) for name, p in step.x.items()}
     if d.law == "persistence-filter":
@@ -1276,23 +1282,24 @@ def adaptive_tail_conditions(d: FloorData, G: Form, x: dict[str, Form], dx: dict
     yield "slope of L", dx["L"] - (G * U * (Y * Y + T.times(2 * d.a))).times(2 * d.gamma)
 
 
-def read_floor_data(data: Node, witness: Node) -> tuple[FloorData, list[Matrix]]:
-    """Read the loop's data and check the coupling c >= 1/sqrt(8 Jmin) for every inertia."""
+def read_floor_data(data: Node, witness: Node) -> FloorData:
+    """Read the loop's data; check c >= 1/sqrt(8 Jmin) and greatest >= Jmax for every inertia."""
     law = data["law"]["name"].text()
     require(law in LOOPS, f"no comparison system is known for the law {law!r}")
     names = ["lambda", "R0"] + (["gamma", "k0", "a"] if law == "adaptive-scaling" else [])
     values = {name: data["parameters"][name].number() for name in names}
     require(all(v > 0 for n, v in values.items() if n != "k0"), "parameters must be positive")
     require(values.get("k0", Fraction(0)) >= 0, "k0 must not be negative")
-    inertias, c = inertia_vertices(data), witness["coupling"].number()
+    c, greatest = witness["coupling"].number(), witness["greatest_inertia"].number()
     require(c > 0, "the coupling must be positive")
-    for J in inertias:  # convex in J: the vertices suffice
+    for J in inertia_vertices(data):  # convex in J: the vertices suffice
         gap = [[8 * c * c * J[i][j] - (1 if i == j else 0) for j in range(3)] for i in range(3)]
         require(is_positive_semidefinite(gap), "the coupling is below 1/sqrt(8 Jmin)")
+        gap = [[(greatest if i == j else 0) - J[i][j] for j in range(3)] for i in range(3)]
+        require(is_positive_semidefinite(gap), "the greatest inertia is too small")
     zero = Fraction(0)
     gamma, k0, a = (values.get(n, zero) for n in ("gamma", "k0", "a"))
-    loop = FloorData(law, values["lambda"], values["R0"], gamma, k0, a, c, read_profile(data))
-    return loop, inertias
+    return FloorData(law, values["lambda"], values["R0"], gamma, k0, a, c, greatest, read_profile(data))
 
 
 PI_HIGH = Fraction(31415926535897932384626433832795028842, 10**37)
@@ -1310,7 +1317,7 @@ def cosine_below(degrees: Fraction) -> Fraction:
     return total_
 
 
-def check_initial_set(data: Node, d: FloorData, inertias: list[Matrix], witness: Node) -> str:
+def check_initial_set(data: Node, d: FloorData, witness: Node) -> str:
     """Check that the witness's box [0, s] x [0, y] holds the initial set; return the set for people."""
     node, box = data["initial_set"], witness["box"]
     s, y = box["s"].number(), box["y"].number()
@@ -1329,15 +1336,7 @@ def check_initial_set(data: Node, d: FloorData, inertias: list[Matrix], witness:
         g = d.profile.shapes[0][0] if d.profile.shapes[0] else Fraction(0)
         kappa = 1 / d.R0 if d.law == "persistence-filter" else d.k0
         reach = abs(rate) + 2 * g * g * kappa * min(Fraction(1), s * NO_BOUND)  # |bv| <= s sqrt 2
-        greatest = witness["greatest_inertia"].number()
-        bounded = all(
-            is_positive_semidefinite(
-                [[(greatest if i == j else 0) - J[i][j] for j in range(3)] for i in range(3)]
-            )
-            for J in inertias
-        )
-        require(bounded, "the greatest inertia is too small")
-        enough = enough or y * y >= greatest * reach * reach
+        enough = enough or y * y >= d.greatest * reach * reach
     require(enough, "y is too small for the rates of the set")
     return ", ".join(words)
 
@@ -1412,8 +1411,8 @@ def check_tail(d: FloorData, place: Node, start: Fraction, known: Bounds) -> tup
 def check_filter_floor(data: Node, certificate: Node) -> list[str]:
     """R >= floor from every start of a set, for all time or up to a horizon; and convergence."""
     claim, witness = certificate["claim"], certificate["witness"]
-    d, inertias = read_floor_data(data, witness)
-    words = check_initial_set(data, d, inertias, witness)
+    d = read_floor_data(data, witness)
+    words = check_initial_set(data, d, witness)
     places = witness["bins"].items()
     rectangles = [(p["s"].vector(2), p["y"].vector(2)) for p in places]
     require_cover(rectangles, witness["box"]["s"].number(), witness["box"]["y"].number())
@@ -1442,7 +1441,11 @@ def check_filter_floor(data: Node, certificate: Node) -> list[str]:
         f"{describe_profile(d.profile)},",
         describe_inertia(data),
     ]
-    return [*lines, *check_convergence(claim, bins, d)]
+    lines += check_convergence(claim, bins, d)
+    if claim.has("settling") or claim.has("torque"):
+        covered = [all_boxes(d, proved) for proved in bins]
+        lines += check_settling(claim, bins, covered, d) + check_torque(claim, covered, d)
+    return lines
 
 
 def check_convergence(claim: Node, bins: list[FloorBin], d: FloorData) -> list[str]:
@@ -1458,6 +1461,162 @@ def check_convergence(claim: Node, bins: list[FloorBin], d: FloorData) -> list[s
         f"and the bounds of sqrt(1 - b0) and |Omega|_J shrink by a factor {show(ratio)} every "
         f"{show(d.profile.period)} s from t = {show(start)} s on: attitude and rate converge"
     ]
+
+
+def root_above(value: Fraction) -> Fraction:
+    """Return a rational >= sqrt(value), within a part in 2^60 of it."""
+    if value <= 0:
+        return Fraction(0)
+    shift = max(0, 120 - value.numerator.bit_length() + value.denominator.bit_length())
+    shift += shift % 2
+    return Fraction(isqrt((value.numerator << shift) // value.denominator + 1) + 1, 1 << shift // 2)
+
+
+@dataclass(frozen=True)
+class Box:
+    """Bounds that hold throughout a quarter of a step.
+
+    `S` and `y` from above; `R` from above; kappa in [low, high]; g <= `g`; g' in `slope`.
+    """
+
+    stop: Fraction
+    S: Fraction
+    y: Fraction
+    R: Fraction
+    low: Fraction
+    high: Fraction
+    g: Fraction
+    slope: tuple[Fraction, Fraction]
+
+    @property
+    def bv(self) -> Fraction:
+        """Bound of |bv| = sqrt(S' (2 - S')) over S' <= S."""
+        inside = min(self.S, Fraction(1))
+        return root_above(inside * (2 - inside))
+
+
+def quarters(p: Form) -> list[tuple[Fraction, Fraction]]:
+    """Bounds of a polynomial on the four quarters of [0, 1]."""
+    controls, scale = p.plain()
+    bounds = []
+    for half in halves(controls):
+        for quarter in halves(half):
+            unit = scale << 2 * (len(controls) - 1)
+            bounds.append((Fraction(min(quarter), unit), Fraction(max(quarter), unit)))
+    return bounds
+
+
+def boxes(d: FloorData, step: FloorStep, limit: Fraction | None) -> list[Box]:
+    """Return the boxes of a step; `limit` bounds L over all later time, where the step repeats."""
+    bounds = {name: quarters(p) for name, p in step.x.items()}
+    length = (step.stop - step.start) / 4
+    result = []
+    for i in range(4):
+        start = step.start + i * length
+        low, high = ({name: pairs[i][side] for name, pairs in bounds.items()} for side in (0, 1))
+        g = d.profile.gain(start, start + length)
+        slope = [c / length for c in bernstein(g.derivative())]
+        shared = (max(bernstein(g)), (min(slope), max(slope)))
+        if d.law == "persistence-filter":
+            require(low["r"] > 0 and low["K"] > 0, "the floor is not positive")
+            share = d.R0 / low["r"]
+            S = min(high["s"] ** 2 if step.modes[0] == "angle" else Fraction(2), high["z"] ** 2 * share)
+            y = min(high["y"], high["v"] * root_above(share))
+            result.append(Box(start + length, S, y, 1 / low["K"], low["K"], 1 / low["r"], *shared))
+        else:
+            top = high["L"] if limit is None else limit
+            result.append(Box(start + length, high["Z"] ** 2, high["Y"], high["U"], low["k"], top, *shared))
+    return result
+
+
+def bernstein(p: Form) -> Vector:
+    """Return the Bernstein coefficients."""
+    controls, scale = p.plain()
+    return [Fraction(c, scale) for c in controls]
+
+
+Boxes = tuple[list[Box], list[Box]]
+
+
+def all_boxes(d: FloorData, proved: FloorBin) -> Boxes:
+    """Boxes of a bin's transient, and of the first period of its repeating part."""
+    transient = [box for step in proved.steps for box in boxes(d, step, None)]
+    limit = None
+    if proved.tail and "L" in proved.tail[0].ends:
+        first, last = proved.tail[0].ends["L"][0], proved.tail[-1].ends["L"][1]
+        limit = first + max(last - first, Fraction(0)) / (1 - proved.ratio**2)
+    return transient, [box for step in proved.tail for box in boxes(d, step, limit)]
+
+
+def rate_above(d: FloorData, box: Box, bv: Fraction) -> Fraction:
+    """Bound of |w| <= |Omega| + 2 g^2 kappa |bv|, with |Omega| <= y/sqrt(Jmin) <= sqrt(8) c y."""
+    return root_above(8 * d.c * d.c * box.y * box.y) + 2 * box.g**2 * box.high * bv
+
+
+def check_settling(claim: Node, bins: list[FloorBin], covered: list[Boxes], d: FloorData) -> list[str]:
+    """Check that |bv| and |w| stay within tolerances from a time on, if that is claimed."""
+    if not claim.has("settling"):
+        return []
+    node = claim["settling"]
+    time, attitude, rate = (node[name].number() for name in ("time", "attitude", "rate"))
+    for proved, (transient, repeated) in zip(bins, covered, strict=True):
+        for box in transient:
+            bv = box.bv
+            within = bv <= attitude and rate_above(d, box, bv) <= rate
+            require(box.stop <= time or within, f"not settled before {show(box.stop)} s")
+        if not repeated:
+            require(claim.has("horizon"), "a bin has no repeating part")
+            continue
+        period = d.profile.period
+        assert period is not None
+        n = max(int((time - proved.tail[0].start) // period), 0)
+        for periods in (n, n + 1):
+            scale = proved.ratio**periods
+            for box in repeated:
+                bv = root_above(2 * box.S)
+                within = bv * scale <= attitude and rate_above(d, box, bv) * scale <= rate
+                stop = box.stop + periods * period
+                require(stop <= time or within, f"not settled before {show(stop)} s")
+    end = f" up to {show(claim['horizon'].number())} s" if claim.has("horizon") else " for good"
+    return [f"and |bv| <= {show(attitude)}, |w| <= {show(rate)} rad/s from t = {show(time)} s on{end}"]
+
+
+def check_torque(claim: Node, covered: list[Boxes], d: FloorData) -> list[str]:
+    """Check a bound of the Euclidean norm of the applied torque g u, if one is claimed.
+
+    u = q J bv - 2 g kappa bv x J Omega + 4 g^3 kappa^2 bv x J bv - g kappa J (b0 Omega + bv x Omega)
+        - (g/2) kappa (1 + b0) J Omega,   q = -4 g' kappa - 2 g kappa' + 2 g^3 kappa^2 b0.
+    """
+    if not claim.has("torque"):
+        return []
+    bound = claim["torque"].number()
+    least, root = 1 / (8 * d.c * d.c), root_above(d.greatest)
+    for transient, repeated in covered:
+        for box in (*transient, *repeated):
+            g, high, n = box.g, box.high, box.bv
+            u = (
+                max(abs(q) for q in torque_coefficient(d, box)) * d.greatest * n
+                + 2 * g * high * n * root * box.y
+                + 2 * g**3 * high**2 * (d.greatest - least) * n**2
+                + g * high * d.greatest * root_above(box.y**2 / least)
+                + g * high * root * box.y
+            )
+            require(g * u <= bound, f"the torque is not bounded before {show(box.stop)} s")
+    return [f"and |g u| <= {show(bound)} N m (Euclidean)"]
+
+
+def torque_coefficient(d: FloorData, box: Box) -> tuple[Fraction, Fraction]:
+    """Bounds of q."""
+    g, high, zero = box.g, box.high, Fraction(0)
+    slope = [-4 * s * k for s in box.slope for k in (box.low, high)]
+    b0, square = 1 - min(box.S, Fraction(2)), 2 * g**3 * high**2
+    if d.law == "persistence-filter":  # kappa' = lambda kappa - g^2 kappa^2 (1 + b0)
+        low = -2 * g * d.lam * high + min(square * (1 + 2 * b0), zero)
+        return min(slope) + low, max(slope) + 3 * square
+    y2 = box.y**2
+    intake = min(2 * (y2 + 2 * d.a * box.S), 2 * d.a * (1 + y2 / (4 * d.a)) ** 2)
+    low = -2 * g**3 * d.gamma * box.R * intake + min(square * b0, zero)
+    return min(slope) + low, max(slope) + square
 
 
 # --- command line ------------------------------------------------------------------------------

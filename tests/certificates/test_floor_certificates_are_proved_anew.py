@@ -103,6 +103,8 @@ def is_implied(document, mutant):
         and F(new["floor"]) <= F(old["floor"])
         and F(new["ratio"]) >= F(old["ratio"])
         and F(new["ratio_from"]) >= F(old["ratio_from"])
+        and F(new["torque"]) >= F(old["torque"])
+        and all(F(new["settling"][k]) >= F(v) for k, v in old["settling"].items())
     )
 
 
@@ -173,13 +175,19 @@ def test_more_than_was_proved_is_refused(document):
     def unknown_law(data, _):
         data["law"]["name"] = "quaternion-pd"
 
+    def less_torque(_, c):
+        c["claim"]["torque"] = str(F(c["claim"]["torque"]) * F(999, 1000))
+
+    def sooner(_, c):
+        c["claim"]["settling"]["time"] = str(F(c["claim"]["settling"]["time"]) - 1)
+
     def stray_field(_, c):
         c["claim"]["also"] = "1"
 
     assert edit(document, lambda *_: None)
     for change in (
         raise_floor, widen_angle, widen_rate, lose_a_bin, lose_a_step, lose_the_tail, slow_filter,
-        unknown_law, stray_field,
+        unknown_law, less_torque, sooner, stray_field,
     ):  # fmt: skip
         assert not edit(document, change), change.__name__
 

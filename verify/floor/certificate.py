@@ -14,14 +14,28 @@ from .certify import Floor
 from .witness import Witness
 
 if TYPE_CHECKING:
+    from ..convergence import Convergence
     from .study import FloorQuestion
+    from .torque_bound import TorqueBound
 
 KIND = "filter-floor"
 LAW_PARAMETERS = ("lambda", "gamma", "R0", "k0", "a")
 
 
-def floor_certificate(question: FloorQuestion, floor: Floor) -> Certificate:
-    """Certificate of R >= floor, and of convergence where every witness has a repeating part."""
+def floor_certificate(
+    question: FloorQuestion,
+    floor: Floor,
+    *,
+    convergence: Convergence | None = None,
+    torque: TorqueBound | None = None,
+) -> Certificate:
+    """Certificate of R >= floor, of convergence where every witness has a repeating part, and of more.
+
+    Parameters
+    ----------
+    convergence : its settling time for the question's tolerances is claimed too
+    torque : its bound of |g u| is claimed too
+    """
     q = question
     data: dict[str, Any] = {
         "inertia": q.body.exact_inertia,
@@ -43,7 +57,12 @@ def floor_certificate(question: FloorQuestion, floor: Floor) -> Certificate:
         ratios = [max(t.ratios.values(), default=0.0) for t in tails if t is not None]
         claim["ratio"] = Fraction(max(ratios))
         claim["ratio_from"] = max(t.start for t in tails if t is not None)
-    return Certificate(KIND, data, claim, _witness(question, floor))
+    if convergence is not None and convergence.settling is not None:
+        time = Fraction(convergence.settling)
+        claim["settling"] = {"time": time, "attitude": q.attitude, "rate": q.rate}
+    if torque is not None:
+        claim["torque"] = Fraction(torque.applied)
+    return Certificate(KIND, data, claim, _witness(floor))
 
 
 def schedule_data(schedule: Schedule) -> dict[str, Any]:
@@ -61,15 +80,13 @@ def schedule_data(schedule: Schedule) -> dict[str, Any]:
     return data
 
 
-def _witness(question: FloorQuestion, floor: Floor) -> dict[str, Any]:
-    witness: dict[str, Any] = {
+def _witness(floor: Floor) -> dict[str, Any]:
+    return {
         "coupling": Fraction(floor.bounds.coupling),
+        "greatest_inertia": floor.bounds.greatest,
         "box": {"s": Fraction(floor.initial.s_high), "y": Fraction(floor.initial.y_high)},
         "bins": [_bin(w) for w in floor.witnesses],
     }
-    if question.max_rate is not None or question.max_weighted_rate is None:
-        witness["greatest_inertia"] = floor.bounds.greatest
-    return witness
 
 
 def _bin(witness: Witness) -> dict[str, Any]:

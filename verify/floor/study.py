@@ -119,7 +119,7 @@ def answer(question: FloorQuestion) -> FloorAnswer:
         found = analyse_convergence(floor, attitude=float(q.attitude), rate=float(q.rate))
     certificate = None
     if floor is not None and reaches_far_enough(floor):
-        certificate = floor_certificate(q, floor)
+        certificate = floor_certificate(q, floor, convergence=found, torque=torque)
     facts = FloorFacts(
         law_name=q.law.name,
         floor=floor,
