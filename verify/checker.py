@@ -1685,8 +1685,8 @@ def transition(A: Matrix, F: Matrix, gain: Form, h: Fraction) -> tuple[Grid, Fra
     n, powers = len(A), power_coefficients(gain)
     M: list[Grid] = []
     for j, g in enumerate(powers):
-        rows = [[(A[r][c] if j == 0 else 0) - g * F[r][c] for c in range(n)] for r in range(n)]
-        M.append([[round(h * x * GRID) for x in row] for row in rows])
+        exact_rows = [[(A[r][c] if j == 0 else 0) - g * F[r][c] for c in range(n)] for r in range(n)]
+        M.append([[round(h * x * GRID) for x in row] for row in exact_rows])
     term = [[GRID * (i == j) for j in range(n)] for i in range(n)]
     terms, total_ = [term], term
     for k in range(TERMS):
