@@ -25,6 +25,9 @@ def run(
         Literal["auto", "fast", "reference"],
         typer.Option("--solver", help="fast: convex programs; reference: nonlinear program (IPOPT)."),
     ] = "auto",
+    bound: Annotated[
+        bool, typer.Option("--bound/--no-bound", help="Certify a lower bound beside each optimum.")
+    ] = True,
     debug: Debug = False,
 ) -> int:
     """Find the least peak torque any controller could do with through the windows."""
@@ -42,7 +45,7 @@ def run(
     for key in norm or ():
         if key not in norms:
             raise InputError(f"--norm {key}: expected component, euclidean or thrusters")
-    options = OptimumOptions(norms=norms, starts=starts, seed=seed, solver=solver)
+    options = OptimumOptions(norms=norms, starts=starts, seed=seed, solver=solver, bound=bound)
     with progress(loaded.name) as step:
         study = run_optimum(loaded, options, step)
     print_optimum(output(), study)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from ..optim.peak import Standing
 from ..reports.numbers import write
+from ..reports.parts import quantity
 from ..study.optimum_record import residuals, terminal_words
 from .claim_tables import plain_table
 
@@ -32,21 +33,32 @@ def print_optimum(console: Console, study: OptimumStudy) -> None:
         + ("torque up to p g(t)." if gain else "full torque inside the windows.")
     )
     console.print()
-    table = plain_table("Least peak", "found", "standing", "local optima", "cells", "impulse")
+    table = plain_table(
+        "Least peak", "certified bound <=", "found", "gap", "standing", "local optima", "cells", "impulse"
+    )
     for optimum in study.optima:
         answer, unit = optimum.answer, optimum.problem.norm.unit
         found = answer.history is not None
         table.add_row(
             optimum.problem.norm.name,
+            _bound(optimum),
             f"{answer.peak:.7g} {unit}" if found else "-",
+            "-" if optimum.gap is None else f"{100 * max(0.0, optimum.gap):.3g} %",
             _styled(answer.standing),
             _optima(optimum),
-            str(answer.cells) if found else "-",
-            f"{answer.impulse:.6g} {unit} s" if found else "-",
         )
     console.print(table)
     for optimum in study.optima:
         _details(console, optimum)
+
+
+def _bound(optimum: Optimum) -> str:
+    """The certified bound, rounded down."""
+    if optimum.bound is None:
+        return "-"
+    unit = optimum.problem.norm.unit
+    lower = quantity("bound", optimum.bound.value, unit=unit, rigorous=True, side="lower")
+    return write(lower).ascii.removeprefix(">= ")
 
 
 def _styled(standing: Standing) -> str:
@@ -77,12 +89,22 @@ def _details(console: Console, optimum: Optimum) -> None:
     if optimum.hopeless is not None and optimum.hopeless.reason != answer.reason:
         console.print(f"  limit: {optimum.hopeless.reason}")
         console.print(f"  next step: {optimum.hopeless.next_step}")
+    elif optimum.limit_is_refuted:
+        unit = optimum.problem.norm.unit
+        console.print(
+            f"  limit {optimum.limit:g} {unit} is below the certified bound: no controller meets it"
+        )
     elif optimum.within_limit is not None:
         unit = optimum.problem.norm.unit
         word = "is enough" if optimum.within_limit else "was not met by any transfer found"
         console.print(f"  limit {optimum.limit:g} {unit} {word}")
-    for quantity in residuals(optimum):
-        console.print(f"  {quantity['label']}: {write(quantity, most=2).ascii}")
+    if optimum.bound is not None:
+        console.print(f"  certified bound from: {optimum.bound.name}")
+    if answer.history is not None:
+        impulse = f"{answer.impulse:.6g} {optimum.problem.norm.unit} s"
+        console.print(f"  impulse {impulse}; {answer.cells} cells, {answer.solver}")
+    for residual in residuals(optimum):
+        console.print(f"  {residual['label']}: {write(residual, most=2).ascii}")
     if answer.switching is not None and answer.switching.switch_times:
         times = answer.switching.switch_times
         shown = ", ".join(_switch(t, j) for t, j in times[:MOST_SWITCHES])

@@ -12,6 +12,7 @@ from ..optim.problem import Terminal, TransferProblem, WindowProfile
 from ..scenario import Scenario
 
 if TYPE_CHECKING:
+    from ..optim.bounds import LowerBound
     from ..optim.peak import PeakAnswer
     from ..optim.peak.explain import Explanation
     from ..optim.peak.options import LocalSolver
@@ -19,6 +20,12 @@ if TYPE_CHECKING:
 Progress = Callable[[str, float], None]
 NormKey = Literal["component", "euclidean", "thrusters"]
 SolverKey = Literal["auto", "fast", "reference"]
+INVERSION_ALLOWANCE = 1e-7
+"""A checked history misses the end by up to 1e-8 rad, which this much of the peak more than covers."""
+
+
+class BoundInversionError(RuntimeError):
+    """A feasible history below its certified bound: one of the two is wrong, and the run must stop."""
 
 
 @final
@@ -32,6 +39,7 @@ class OptimumOptions:
     starts, seed : the multi-start search; None for the scenario's own
     solver : "auto" is the fast one with the reference as fallback
     mesh_gap : largest fraction of the peak that finer cells may still gain
+    bound : compute the certified lower bound beside each optimum
     """
 
     norms: tuple[NormKey, ...] = ()
@@ -39,6 +47,7 @@ class OptimumOptions:
     seed: int | None = None
     solver: SolverKey = "auto"
     mesh_gap: float = 1e-6
+    bound: bool = True
 
 
 @final
@@ -52,6 +61,7 @@ class Optimum:
     answer : the least peak found and its checks
     limit : the torque (or force) limit given for this norm, its unit, or None
     hopeless : why the limit cannot be met by any controller, or None
+    bound : certified lower bound, computed apart from the answer; None where there is none
     """
 
     key: NormKey
@@ -59,6 +69,19 @@ class Optimum:
     answer: PeakAnswer
     limit: float | None
     hopeless: Explanation | None
+    bound: LowerBound | None = None
+
+    @property
+    def gap(self) -> float | None:
+        """(peak found - certified bound) / peak found; None without both."""
+        if self.bound is None or self.answer.history is None or self.answer.peak <= 0:
+            return None
+        return 1.0 - self.bound.value / self.answer.peak
+
+    @property
+    def limit_is_refuted(self) -> bool:
+        """Whether the limit lies below the certified bound: then no controller whatever can meet it."""
+        return self.limit is not None and self.bound is not None and self.limit < self.bound.value
 
     @property
     def within_limit(self) -> bool | None:
@@ -70,7 +93,8 @@ class Optimum:
         """0 solved (and within the limit), 1 impossible, 3 left open."""
         from ..optim.peak import Standing
 
-        if self.answer.standing is Standing.IMPOSSIBLE or self.hopeless is not None:
+        ruled_out = self.hopeless is not None or self.limit_is_refuted
+        if self.answer.standing is Standing.IMPOSSIBLE or ruled_out:
             return 1
         if self.answer.standing is Standing.UNDECIDED or self.within_limit is False:
             return 3
@@ -123,7 +147,7 @@ def run_optimum(
         limit = limit_of(scenario, key)
         hopeless = explain(problem, limit)
         answer = minimum_peak(problem, solver=_solver(options.solver), search=search, refinement=refinement)
-        optima.append(Optimum(key, problem, answer, limit, hopeless))
+        optima.append(Optimum(key, problem, answer, limit, hopeless, _bound(problem, answer, options)))
     tell("done", 1.0)
     return OptimumStudy(scenario, options, tuple(optima))
 
@@ -191,6 +215,31 @@ def limit_of(scenario: Scenario, key: NormKey) -> float | None:
     if scenario.limits is not None and scenario.limits.norm == key:
         return float(scenario.limits.torque)
     return None
+
+
+def _bound(problem: TransferProblem, answer: PeakAnswer, options: OptimumOptions) -> LowerBound | None:
+    """Certified lower bound, never computed from the answer; their order is enforced.
+
+    Raises
+    ------
+    BoundInversionError
+        If a checked history has a peak below the bound.
+    """
+    from ..optim.bounds import certified_lower_bound
+    from ..optim.peak import Standing
+
+    if not options.bound or answer.history is None:
+        return None
+    try:
+        bound = certified_lower_bound(problem)
+    except NotImplementedError:
+        return None
+    if answer.standing is Standing.CHECKED and bound.value > answer.peak * (1.0 + INVERSION_ALLOWANCE):
+        raise BoundInversionError(
+            f"the optimum found, {answer.peak:.9g} {bound.unit}, lies below its certified bound "
+            f"{bound.value:.9g} {bound.unit} ({bound.name})"
+        )
+    return bound
 
 
 def _solver(key: SolverKey) -> LocalSolver | None:

@@ -80,11 +80,22 @@ def optimum_entry(study: OptimumStudy, optimum: Optimum) -> tuple[dict[str, Any]
         ],
         "notes": notes(optimum),
     }
+    if optimum.bound is not None:
+        bound = optimum.bound
+        entry["bound"] = _lower("certified_bound", bound.value, unit)
+        entry["bound_name"] = bound.name
+        entry["other_bounds"] = [_lower(b.name, b.value, unit) for b in bound.all if b is not bound.best]
+    if optimum.gap is not None:
+        entry["gap"] = parts.quantity("gap", 0.0, max(0.0, optimum.gap), side="upper")
     if held:
         entry["arrays"] = {name.removeprefix(f"{key}."): name for name in held}
     if answer.switching is not None:
         entry["switch_times"] = [time for time, _ in answer.switching.switch_times]
     return entry, held
+
+
+def _lower(name: str, value: float, unit: str) -> dict[str, Any]:
+    return parts.quantity(name, value, unit=unit, rigorous=True, side="lower")
 
 
 def terminal_words(optimum: Optimum) -> str:

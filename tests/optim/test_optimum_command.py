@@ -62,6 +62,27 @@ def test_same_scenario_same_record(tmp_path):
     assert json.loads(first)["provenance"]["seeds"] == {"starts": 1}
 
 
+def test_bound_below_optimum_and_an_inversion_stops_the_run(tmp_path, capsys, monkeypatch):
+    from dataclasses import replace
+
+    import intermit.optim.bounds as bounds
+
+    path = scenario(tmp_path, more="starts = 1\nnorm = 'euclidean'")
+    study = run_optimum(load_scenario(path), OptimumOptions(norms=("euclidean",)))
+    optimum = study.optima[0]
+    assert optimum.bound.value <= optimum.answer.peak
+    assert 0 < optimum.gap < 0.015
+    honest = bounds.certified_lower_bound
+
+    def inflated(problem):
+        found = honest(problem)
+        return replace(found, best=replace(found.best, exact=found.best.exact * 2))
+
+    monkeypatch.setattr(bounds, "certified_lower_bound", inflated)
+    assert run(["optimum", str(path), "--norm", "euclidean"]) == 70
+    assert "lies below its certified bound" in capsys.readouterr().err
+
+
 def test_no_window_before_the_final_time_is_impossible(tmp_path, capsys):
     assert run(["optimum", str(scenario(tmp_path, final_time=0.005))]) == 1
     assert "no thruster window opens before tf = 0.005 s" in capsys.readouterr().out
