@@ -30,6 +30,9 @@ COMMANDS = (
 INPUT_ERRORS = frozenset({"ScenarioError", "RecordError", "CertificateError"})
 """Errors of the rooms below that the user can mend, by name: naming them imports nothing."""
 
+LONGEST_MESSAGE = 1000
+"""Characters of an error message that are shown."""
+
 SUMMARY = "Check, optimise and report attitude control through thruster windows."
 
 
@@ -117,6 +120,6 @@ def _report(error: Exception) -> int:
 
 def _fail(message: str, code: ExitCode) -> int:
     """Say what went wrong in one line on stderr."""
-    line = "".join(c if c.isprintable() else " " for c in message)
+    line = "".join(c if c.isprintable() else " " for c in message[:LONGEST_MESSAGE])
     typer.echo(f"intermit: {line}", err=True)
     return code

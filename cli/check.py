@@ -19,6 +19,10 @@ def run(
     margins: Annotated[
         bool, typer.Option("--margins/--no-margins", help="Look for how far the schedule may change.")
     ] = True,
+    search: Annotated[
+        bool, typer.Option("--search/--no-search", help="Look for the worst start by simulation.")
+    ] = True,
+    workers: Annotated[int, typer.Option("--workers", min=1, help="Processes; the result is the same.")] = 2,
     debug: Debug = False,
 ) -> int:
     """Check a schedule and its laws: one verdict a condition, with its numbers and margin.
@@ -27,6 +31,7 @@ def run(
     """
     del debug
     from ..scenario import load_scenario
+    from ..study.case import CaseOptions
     from ..study.check import CheckOptions, run_check
     from ..study.counting import exit_code
     from .check_page import print_check
@@ -39,7 +44,8 @@ def run(
     for scenario in loaded:
         for warning in scenario.warnings:
             note(f"warning: {warning}")
-    options, studies = CheckOptions(simulate=simulate, margins=margins), []
+    case = CaseOptions(margins=margins, search=search)
+    options, studies = CheckOptions(simulate=simulate, case=case, workers=workers), []
     for scenario in loaded:
         with progress(scenario.name) as step:
             studies.append(run_check(scenario, options, step))

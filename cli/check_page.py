@@ -121,7 +121,7 @@ def _run_table(runs: Sequence[tuple[str, list[dict[str, object]]]]) -> Table:
 
 
 def _remarks(case: Case) -> Iterable[str]:
-    yield from case.notes
+    yield from case.findings.notes
     if case.run is not None and case.run.failure:
         yield case.run.failure
     if case.run is not None and case.run.trajectory is not None and case.run.trajectory.is_saturated_model:

@@ -3,69 +3,130 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from typing import final
 
 from ..models.laws import Law
 from ..scenario import LawChoice, Scenario
 from ..verify.derivative import SampledDerivative, with_samples
 from ..verify.filter_start import filter_start_claim
-from ..verify.lyapunov import lyapunov_claims
+from ..verify.floor.claims import torque_quantities
+from ..verify.floor.study import FloorAnswer, answer
+from ..verify.lyapunov.claims import lyapunov_claims
 from ..verify.verdict import Claim, Verdict
+from .curves import CertifiedCurves, certified_curves
+from .floor import floor_question, is_certified
 from .keys import CLAIM_KEYS, order_of
-from .run import Run, run_law
+from .margins import convergence_margins, with_margins
+from .run import Run, Seen
 from .sampled import reference_floor, sample_law
 
 Progress = Callable[[str, float], None]
 
 
 @final
+@dataclass(frozen=True, kw_only=True)
+class CaseOptions:
+    """How much is asked about one law.
+
+    Attributes
+    ----------
+    margins : look for how far schedule and lambda may change
+    search : look for the worst start by simulation
+    """
+
+    margins: bool = True
+    search: bool = True
+
+
+@final
 @dataclass(frozen=True)
-class Case:
-    """One law of the scenario, built, checked and run.
+class Findings:
+    """What was found about one law beside its run; it can be sent between processes.
 
     Attributes
     ----------
     claims : in the order of the claim keys
+    curves : certified bounds over the scenario's horizon; None where nothing reaches that far
     samples : sampled derivative of V; None where the law has no storage function
-    run : from the scenario's initial state; None if no simulation was asked for
     notes : what a reader should know beside the claims
     """
 
-    choice: LawChoice
-    law: Law
     claims: tuple[Claim, ...]
+    curves: CertifiedCurves | None
     samples: SampledDerivative | None
-    run: Run | None
     notes: tuple[str, ...] = ()
 
 
-def check_case(scenario: Scenario, choice: LawChoice, *, simulate: bool, progress: Progress) -> Case:
-    """Decide every claim about one law, and run it."""
+@final
+@dataclass(frozen=True)
+class Case:
+    """One law of the scenario, checked and run.
+
+    Attributes
+    ----------
+    claims : the findings' claims, marked as counted or not
+    run : from the scenario's initial state; None if no simulation was asked for
+    """
+
+    choice: LawChoice
+    findings: Findings
+    claims: tuple[Claim, ...]
+    run: Run | None
+
+
+def find(
+    scenario: Scenario, choice: LawChoice, seen: Seen, options: CaseOptions, progress: Progress | None = None
+) -> Findings:
+    """Decide every claim about one law; `seen` is what its run showed."""
+    tell = progress if progress is not None else _silent
     law = choice.build()
-    progress("proof of V'", 0.0)
-    claims = {claim.key: claim for claim in decided_claims(scenario, law)}
-    notes: list[str] = []
-    run = None
-    if simulate:
-        progress("simulation", 0.0)
-        run = run_law(scenario, law)
-    progress("samples of V'", 0.5)
-    floor = reference_floor(scenario, law, claims.get("filter.floor"), run)
-    samples, why_not = sample_law(
-        scenario, law, floor, lambda done: progress("samples of V'", 0.5 + 0.5 * done)
-    )
-    if samples is None:
-        notes.append(f"V' was not sampled: {why_not}")
-    else:
+    tell("V' as a polynomial", 0.0)
+    claims = {claim.key: claim for claim in _algebraic_claims(scenario, law)}
+    tell("floor of R", 0.2)
+    question = floor_question(scenario, law, seen, search=options.search)
+    found = answer(question)
+    claims |= {claim.key: claim for claim in found.claims}
+    _add_torque(claims, found)
+    if options.margins and claims["convergence"].verdict is Verdict.PROVED:
+        tell("margins of convergence", 0.6)
+        quantities = tuple(convergence_margins(scenario, choice, partial(is_certified, question)))
+        claims["convergence"] = with_margins(claims["convergence"], quantities)
+    tell("samples of V'", 0.8)
+    floor = reference_floor(scenario, law, claims["filter.floor"], seen)
+    samples, why_not = sample_law(scenario, law, floor, lambda done: tell("samples of V'", 0.8 + 0.2 * done))
+    if samples is not None:
         _add_samples(claims, samples)
     ordered = tuple(sorted(claims.values(), key=lambda claim: order_of(claim.key)))
-    return Case(choice, law, ordered, samples, run, tuple(notes))
+    curves = certified_curves(found.floor, float(scenario.horizon)) if found.floor is not None else None
+    return Findings(ordered, curves, samples, (f"V' was not sampled: {why_not}",) if why_not else ())
 
 
 def decided_claims(scenario: Scenario, law: Law) -> tuple[Claim, ...]:
     """Claims about one law that exact means decide, with their certificates; no samples, no simulation."""
-    return (*_filter_claims(scenario, law), *_lyapunov_claims(scenario, law))
+    found = answer(floor_question(scenario, law, Seen(), search=False))
+    return (*_algebraic_claims(scenario, law), *found.claims)
+
+
+def _algebraic_claims(scenario: Scenario, law: Law) -> Iterator[Claim]:
+    """Claims about R(0), and about the law's storage function over the inertia's whole tolerance."""
+    yield from _filter_claims(scenario, law)
+    yield from lyapunov_claims(
+        law, scenario.body, tolerance=scenario.inertia_tolerance, schedule=scenario.schedule
+    )
+
+
+def _add_torque(claims: dict[str, Claim], found: FloorAnswer) -> None:
+    """Without a limit to hold it against, the certified torque bound stands with the convergence."""
+    if found.torque is not None and "torque.limit" not in claims:
+        convergence = claims["convergence"]
+        quantities = (*convergence.quantities, *torque_quantities(found.torque))
+        claims["convergence"] = replace(convergence, quantities=quantities)
+
+
+def _silent(stage: str, fraction: float) -> None:
+    del stage, fraction
 
 
 def _filter_claims(scenario: Scenario, law: Law) -> Iterator[Claim]:
@@ -74,13 +135,6 @@ def _filter_claims(scenario: Scenario, law: Law) -> Iterator[Claim]:
     decay = law.parameters.get("lambda")
     if "R" in initial and decay is not None:
         yield filter_start_claim(scenario.schedule, decay=decay, initial=initial["R"])
-
-
-def _lyapunov_claims(scenario: Scenario, law: Law) -> tuple[Claim, ...]:
-    """Claims about the law's storage function, proved over the inertia's whole tolerance."""
-    return lyapunov_claims(
-        law, scenario.body, tolerance=scenario.inertia_tolerance, schedule=scenario.schedule
-    )
 
 
 def _add_samples(claims: dict[str, Claim], samples: SampledDerivative) -> None:

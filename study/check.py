@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field
 from typing import final
 
 from ..scenario import Scenario
 from ..verify.excitation import excitation_claim
 from ..verify.schedule_facts import schedule_claims
 from ..verify.verdict import Claim
-from .case import Case, check_case
+from .case import Case, CaseOptions
 from .counting import count, counted_keys, exit_code, sentence
+from .jobs import find_all
+from .run import run_law, seen_in
 
 Progress = Callable[[str, float], None]
 
@@ -24,11 +26,14 @@ class CheckOptions:
     Attributes
     ----------
     simulate : run every law from the initial state
-    margins : look for how far the schedule may change before a claim flips
+    case : how much is asked about each law
+    workers : processes; more than 1 only from a program that guards its main module
+        (`if __name__ == "__main__"`). The result does not depend on it.
     """
 
     simulate: bool = True
-    margins: bool = True
+    case: CaseOptions = field(default_factory=CaseOptions)
+    workers: int = 1
 
 
 @final
@@ -77,13 +82,20 @@ def run_check(
     counted_keys(scenario)
     tell("schedule", 0.0)
     schedule = count(scenario_claims(scenario), scenario)
-    cases = []
-    for i, choice in enumerate(scenario.laws):
-        part = _Part(tell, choice.label, 0.05 + 0.95 * i / len(scenario.laws), 0.95 / len(scenario.laws))
-        case = check_case(scenario, choice, simulate=options.simulate, progress=part)
-        cases.append(replace(case, claims=count(case.claims, scenario)))
+    runs, jobs = [], []
+    for choice in scenario.laws:
+        tell(f"{choice.label}: simulation", 0.05)
+        run = run_law(scenario, choice.build()) if options.simulate else None
+        runs.append(run)
+        jobs.append((scenario, choice, seen_in(scenario, run), options.case))
+    findings = find_all(jobs, options.workers, tell)
+    cases = (
+        Case(choice, found, count(found.claims, scenario), run)
+        for choice, found, run in zip(scenario.laws, findings, runs, strict=True)
+    )
+    study = CheckStudy(scenario, schedule, tuple(cases))
     tell("done", 1.0)
-    return CheckStudy(scenario, schedule, tuple(cases))
+    return study
 
 
 def scenario_claims(scenario: Scenario) -> tuple[Claim, ...]:
@@ -91,20 +103,6 @@ def scenario_claims(scenario: Scenario) -> tuple[Claim, ...]:
     choice = scenario.schedule_choice
     facts = schedule_claims(choice.schedule, overruns_as_printed=choice.overruns_as_printed)
     return (*facts, excitation_claim(choice.schedule, scenario.check.pe_window))
-
-
-@final
-@dataclass(frozen=True)
-class _Part:
-    """Progress of one law as part of the whole."""
-
-    tell: Progress
-    label: str
-    start: float
-    width: float
-
-    def __call__(self, stage: str, fraction: float) -> None:
-        self.tell(f"{self.label}: {stage}", self.start + self.width * fraction)
 
 
 def _silent(stage: str, fraction: float) -> None:

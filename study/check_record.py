@@ -17,7 +17,7 @@ from ..scenario import LawChoice, Scenario
 from ..verify.derivative import SampledDerivative
 from .case import Case
 from .check import CheckStudy
-from .claims import claim_entries, witness_entry
+from .claims import claim_entries, quantity_entry, witness_entry
 from .run import run_entry
 
 Array = NDArray[np.float64]
@@ -54,10 +54,10 @@ def check_provenance(
     effort += [
         {
             "label": f"gradient evaluations, {case.choice.label}",
-            "count": case.samples.samples.search_evaluations,
+            "count": case.findings.samples.samples.search_evaluations,
         }
         for case in study.cases
-        if case.samples is not None
+        if case.findings.samples is not None
     ]
     found = provenance(
         scenario_name=scenario.name,
@@ -80,8 +80,8 @@ def check_sections(study: CheckStudy) -> tuple[dict[str, Any], dict[str, Array]]
         entry, held = case_entry(study.scenario, case, f"law{number}")
         cases.append(entry)
         arrays |= held
-        if case.samples is not None:
-            entry, held = samples_entry(case.samples, case.choice.label, f"law{number}")
+        if case.findings.samples is not None:
+            entry, held = samples_entry(case.findings.samples, case.choice.label, f"law{number}")
             samples.append(entry)
             arrays |= held
     schedule, held = schedule_entry(study)
@@ -165,12 +165,29 @@ def case_entry(scenario: Scenario, case: Case, key: str) -> tuple[dict[str, Any]
     """One law: parameters, claims and its run."""
     runs: list[dict[str, Any]] = []
     arrays: dict[str, Array] = {}
-    notes = list(case.notes)
+    notes = list(case.findings.notes)
     if case.run is not None and case.run.trajectory is not None:
         entry, arrays = run_entry(scenario, case.run, f"{key}.run", case.choice.label)
         runs.append(entry)
     elif case.run is not None:
         notes.append(case.run.failure)
+    certificates = []
+    curves = case.findings.curves
+    if curves is not None:
+        name = f"{key}.certified"
+        arrays |= curves.arrays(name)
+        floor = next(claim for claim in case.claims if claim.key == "filter.floor")
+        certificates.append(
+            {
+                "key": name,
+                "label": f"certified bounds, {case.choice.label}",
+                "claim": floor.statement,
+                "quantities": [quantity_entry(q) for q in floor.quantities],
+                "arrays": curves.roles(name),
+                "recheck": f"intermit check {scenario.path.name}",
+                "notes": ["Each value holds from its time to the next."],
+            }
+        )
     return {
         "key": key,
         "label": case.choice.label,
@@ -178,6 +195,7 @@ def case_entry(scenario: Scenario, case: Case, key: str) -> tuple[dict[str, Any]
         "parameters": parameter_entries(case.choice),
         "claims": claim_entries(case.claims, recheck=f"intermit check {scenario.path.name}"),
         "runs": runs,
+        "certificates": certificates,
         "notes": notes,
     }, arrays
 

@@ -18,6 +18,7 @@ def quantity_entry(quantity: Quantity) -> dict[str, Any]:
         "unit": quantity.unit,
         "label": quantity.label or quantity.name.replace("_", " "),
         "rigorous": quantity.rigorous,
+        "side": quantity.side,
     }
 
 

@@ -49,6 +49,24 @@ class Run:
     failure: str = ""
 
 
+@final
+@dataclass(frozen=True)
+class Seen:
+    """What a run showed: its least R, s, and its largest applied torque in the limit's norm, N m."""
+
+    floor: float | None = None
+    peak: float | None = None
+
+
+def seen_in(scenario: Scenario, run: Run | None) -> Seen:
+    """Figures of a run that stand beside what is proved."""
+    if run is None or run.torque is None:
+        return Seen()
+    euclidean = scenario.limits is not None and scenario.limits.norm == "euclidean"
+    peak = run.torque.peak_euclidean if euclidean else run.torque.peak_component
+    return Seen(run.filter_floor.value if run.filter_floor is not None else None, peak.value)
+
+
 def run_law(scenario: Scenario, law: Law) -> Run:
     """Simulate a law from the scenario's initial state to its horizon."""
     saturation = None

@@ -21,7 +21,7 @@ from ..verify.derivative import (
 )
 from ..verify.floor.converged import ConvergedFilter
 from ..verify.verdict import Claim, Verdict
-from .run import Run
+from .run import Seen
 
 CERTIFIED_FLOOR = "certified_floor"
 """Name of the quantity of the claim "filter.floor" that is a certified floor of R."""
@@ -56,7 +56,7 @@ def sample_law(
     return interpret(function, scenario.body, samples, weight=weight, gain_target=target), ""
 
 
-def reference_floor(scenario: Scenario, law: Law, claim: Claim | None, run: Run | None) -> Fraction | None:
+def reference_floor(scenario: Scenario, law: Law, claim: Claim | None, seen: Seen) -> Fraction | None:
     """R_min for V's k* = 1/R_min and for the sampled domain, s.
 
     The certified floor where there is one; else the converged one (periodic schedules), which bounds
@@ -70,9 +70,7 @@ def reference_floor(scenario: Scenario, law: Law, claim: Claim | None, run: Run 
     if decay is not None and scenario.schedule.is_periodic:
         low = ConvergedFilter(scenario.schedule, decay).floor().low
         return Fraction(low) if low > 0 else None
-    if run is not None and run.filter_floor is not None and run.filter_floor.value > 0:
-        return Fraction(run.filter_floor.value)
-    return None
+    return Fraction(seen.floor) if seen.floor is not None and seen.floor > 0 else None
 
 
 def sampled_domain(scenario: Scenario, law: Law, floor: Fraction | None) -> SampledDomain:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any, final
+from typing import Any, Literal, final
 
 
 class Verdict(Enum):
@@ -49,6 +49,9 @@ class Quantity:
     rigorous : bool
         True if [low, high] is an enclosure (exact or outward rounded), False for an ordinary
         floating-point figure, whose spread is then an estimate.
+    side : "both", "lower" or "upper"
+        "lower": what is stated is that the true value is >= low (shown rounded down); "upper": that
+        it is <= high (shown rounded up).
     """
 
     name: str
@@ -57,6 +60,7 @@ class Quantity:
     unit: str = ""
     label: str = ""
     rigorous: bool = False
+    side: Literal["both", "lower", "upper"] = "both"
 
     def __post_init__(self) -> None:
         if not self.low <= self.high:

@@ -5,7 +5,7 @@ from .measured import ThrustSample, measured_schedule
 from .piecewise import Piece, PiecewisePolynomial
 from .profiles import Hermite, Ramps, Shape, build_schedule
 from .schedule import Schedule, Window
-from .variants import missing_in_a_row, shifted_edges, unrolled, without_windows
+from .variants import longer_gap, missing_in_a_row, shifted_edges, unrolled, without_windows
 
 __all__ = [
     "Clock",
@@ -18,6 +18,7 @@ __all__ = [
     "ThrustSample",
     "Window",
     "build_schedule",
+    "longer_gap",
     "measured_schedule",
     "missing_in_a_row",
     "shifted_edges",

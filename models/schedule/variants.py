@@ -1,4 +1,4 @@
-"""Variants of a schedule, exact: windows missed, edges shifted, periods written out."""
+"""Variants of a schedule, exact: windows missed, edges shifted, gaps longer, periods written out."""
 
 from __future__ import annotations
 
@@ -100,3 +100,38 @@ def shifted_edges(
         start, end = (new.on + (t - old.on) * ratio for t in (piece.start, piece.end))
         pieces.append(Piece(start, end, piece.shape))
     return replace(schedule, windows=tuple(windows), profile=contiguous(pieces, schedule.period))
+
+
+def longer_gap(schedule: Schedule, at: Fraction, extra: Fraction) -> Schedule:
+    """Return the schedule with `extra` s of g = 0 put in at an instant at which g is zero already.
+
+    What comes later comes later by `extra`; a period grows by it.
+
+    Parameters
+    ----------
+    at : Fraction
+        A knot in [0, end] from which g is zero (or, at `end`, zero again at the next period's start).
+
+    Raises
+    ------
+    ValueError
+        If extra < 0 or g acts at that instant.
+    """
+    profile = schedule.profile
+    if extra < 0:
+        raise ValueError(f"a gap can only grow, received {float(extra):g} s")
+    if at not in profile.knots:
+        raise ValueError(f"a gap grows at a knot of g, received {float(at):g} s")
+    index = profile.knots.index(at)
+    if index < len(profile.shapes) and profile.shapes[index]:
+        raise ValueError(f"g acts from {float(at):g} s on: there is no gap to make longer")
+    knots = tuple(k + extra if k > at else k for k in profile.knots)
+    shapes = profile.shapes
+    if index == len(shapes) and extra:
+        knots, shapes = (*knots, at + extra), (*shapes, ZERO)
+    return replace(
+        schedule,
+        windows=tuple(Window(w.on + extra, w.off + extra) if w.on >= at else w for w in schedule.windows),
+        profile=PiecewisePolynomial(knots, shapes),
+        period=None if schedule.period is None else schedule.period + extra,
+    )

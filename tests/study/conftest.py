@@ -12,6 +12,10 @@ from intermit.scenario.template import example_files
 EXAMPLES = {path.name: path for path in example_files()}
 
 
+ONE_LAW = '[[law]]\ntype = "persistence-filter"\n'
+"""The law whose proofs are quickest."""
+
+
 @pytest.fixture(scope="session")
 def examples() -> dict[str, Path]:
     """The shipped examples by name."""
@@ -22,7 +26,9 @@ def examples() -> dict[str, Path]:
 def write_scenario(tmp_path: Path) -> Callable[..., Path]:
     """Write a scenario that extends a shipped example; fewer samples keep it quick."""
 
-    def write(text: str = "", *, base: str = "paper.toml", check: str = "", name: str = "case.toml") -> Path:
+    def write(
+        text: str = ONE_LAW, *, base: str = "paper.toml", check: str = "", name: str = "case.toml"
+    ) -> Path:
         path = tmp_path / name
         table = f"[check]\nsamples = 1024\n{check}\n"
         path.write_text(f'extends = "{EXAMPLES[base]}"\n{text}\n{table}', encoding="utf-8")

@@ -66,7 +66,13 @@ def floor_claim(facts: FloorFacts) -> Claim:
         return _undecided("filter.floor", title, statement, reason, step, quantities)
     asked = "for all t >= 0" if floor.horizon is None else f"on [0, {_seconds(floor.horizon)}]"
     certified = Quantity(
-        "certified_floor", floor.value, floor.value, "s", "R_min certified, every start of the set", True
+        "certified_floor",
+        floor.value,
+        floor.value,
+        "s",
+        "R_min certified, every start of the set",
+        True,
+        "lower",
     )
     return Claim(
         key="filter.floor",
@@ -176,12 +182,24 @@ def torque_quantities(bound: TorqueBound) -> tuple[Quantity, ...]:
     """Torque bounds as quantities."""
     return (
         Quantity(
-            "torque_bound_applied", 0.0, bound.applied, "N m", "applied torque g u, Euclidean, at most", True
+            "torque_bound_applied",
+            0.0,
+            bound.applied,
+            "N m",
+            "applied torque g u, Euclidean, at most",
+            True,
+            "upper",
         ),
         Quantity(
-            "torque_bound_commanded", 0.0, bound.commanded, "N m", "command u, Euclidean, at most", True
+            "torque_bound_commanded",
+            0.0,
+            bound.commanded,
+            "N m",
+            "command u, Euclidean, at most",
+            True,
+            "upper",
         ),
-        Quantity("gain_bound", 0.0, bound.gain, "1/s", "gain kappa at most", True),
+        Quantity("gain_bound", 0.0, bound.gain, "1/s", "gain kappa at most", True, "upper"),
     )
 
 
@@ -211,11 +229,13 @@ def _reach_quantities(floor: Floor, found: Convergence) -> tuple[Quantity, ...]:
         return ()
     angle = degrees(found.largest_angle) * (1 + 1e-14)
     items = [
-        Quantity("largest_angle", 0.0, angle, "deg", "error angle 2 acos(b0) at most", True),
-        Quantity("largest_rate", 0.0, found.largest_rate, "rad/s", "rate |w| at most", True),
+        Quantity("largest_angle", 0.0, angle, "deg", "error angle 2 acos(b0) at most", True, "upper"),
+        Quantity("largest_rate", 0.0, found.largest_rate, "rad/s", "rate |w| at most", True, "upper"),
     ]
     if found.settling is not None:
-        items.append(Quantity("settling_bound", 0.0, found.settling, "s", "settled at the latest", True))
+        items.append(
+            Quantity("settling_bound", 0.0, found.settling, "s", "settled at the latest", True, "upper")
+        )
     return tuple(items)
 
 

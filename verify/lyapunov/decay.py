@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 
@@ -98,23 +97,15 @@ def largest_gain(schedule: Schedule) -> Fraction:
 def best_weight(lam: Fraction, body: RigidBody, tolerance: ExactRows | None = None) -> Fraction:
     """Weight a that maximises rho in V_a' <= -rho V_1, to four digits (a choice, not a proof).
 
-    [[(lambda - rho) J, -(a/2) I], [-(a/2) I, (a lambda - rho) I]] >= 0 at every vertex of the box.
+    [[(lambda - rho) J, -(a/2) I], [-(a/2) I, (a lambda - rho) I]] >= 0 binds along Jmin; with
+    q = lambda^2 Jmin the largest rho is lambda q/(1 + q), at a = 2 q/(1 + q).
     """
-    import cvxpy as cp
-
-    a, rho, rate = cp.Variable(), cp.Variable(), float(lam)
-    constraints: list[Any] = [a >= 0]
-    for J in vertices(body.exact_inertia, tolerance):
-        inertia, unit = np.array([[float(x) for x in row] for row in J]), np.eye(3)
-        blocks = [[(rate - rho) * inertia, -a / 2 * unit], [-a / 2 * unit, (rate * a - rho) * unit]]
-        constraints.append(cp.bmat(blocks) >> 0)
-    problem = cp.Problem(cp.Maximize(rho), constraints)
-    try:
-        problem.solve(solver=cp.CLARABEL)
-        value = float(a.value)
-    except (cp.SolverError, TypeError):
-        value = rate**2 * float(body.principal_inertias[0])
-    return Fraction(f"{max(value, 1e-12):.4g}")
+    least = min(
+        float(np.linalg.eigvalsh(np.array([[float(x) for x in row] for row in J]))[0])
+        for J in vertices(body.exact_inertia, tolerance)
+    )
+    q = float(lam) ** 2 * least
+    return Fraction(f"{max(2 * q / (1 + q), 1e-12):.4g}")
 
 
 def _certify(

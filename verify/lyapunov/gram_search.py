@@ -6,15 +6,15 @@ positive definite in exact arithmetic; the stand-alone checker says so again fro
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, final
+from typing import final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..checker import Exponents, Matrix, Ring, is_positive_definite
+from .cone_program import maximise_level
 from .rounding import fit_exactly, rational_null_space
 from .sums_of_squares import Square, Target, Terms, square_terms
 
@@ -77,27 +77,39 @@ class RateSearch:
 
 def largest_rate(ring: Ring, targets: list[Target]) -> RateSearch | None:
     """Largest rate for which every target looks like a sum of squares; None if there is none."""
-    import cvxpy as cp
-
-    rate = cp.Variable()
-    constraints: list[Any] = [rate <= 1e6]
-    balances, rows = [], []
+    sizes: list[int] = []
+    rows: list[dict[int, float]] = []
+    columns: list[tuple[int, int, int]] = []
+    right: list[float] = []
+    reference_column: list[float] = []
+    keys = []
     for target in targets:
         bases = [_identity(len(square.basis)) for square in target.squares]
         equations = _equations(ring, target.squares, bases)
-        expression, grams = _gram_expression(equations, bases)
         fixed, reference = _vector(equations, target.fixed), _vector(equations, target.reference)
         if fixed is None or reference is None:
             return None
-        balances.append(expression == fixed - rate * reference)
-        rows.append(equations.rows)
-        constraints += [G >> 0 for G in grams]
-    problem = cp.Problem(cp.Maximize(rate), constraints + balances)
-    if not _solve(problem) or rate.value is None:
+        rows += [{len(columns) + c: float(v) for c, v in row.items()} for row in equations.matrix]
+        columns += [(len(sizes) + which, p, q) for which, p, q in equations.columns]
+        sizes += [len(B) for B in bases]
+        right += fixed.tolist()
+        reference_column += reference.tolist()
+        keys.append(equations.rows)
+    found = maximise_level(
+        sizes=sizes,
+        equations=rows,
+        columns=columns,
+        right=np.array(right),
+        level_column=np.array(reference_column),
+        shift=0.0,
+        cap=1e6,
+    )
+    if found is None:
         return None
-    duals = [np.asarray(balance.dual_value, dtype=float).ravel() for balance in balances]
-    multipliers = tuple(dict(zip(keys, y.tolist(), strict=True)) for keys, y in zip(rows, duals, strict=True))
-    return RateSearch(float(rate.value), multipliers)
+    ends = np.cumsum([len(k) for k in keys])[:-1]
+    duals = np.split(found.multipliers, ends)
+    multipliers = tuple(dict(zip(k, y.tolist(), strict=True)) for k, y in zip(keys, duals, strict=True))
+    return RateSearch(found.level, multipliers)
 
 
 def find_gram(
@@ -193,54 +205,18 @@ def _vector(equations: _Equations, terms: Terms) -> Array | None:
     return np.array([float(terms.get(key, 0)) for key in equations.rows])
 
 
-def _gram_expression(equations: _Equations, bases: list[Matrix]) -> tuple[Any, list[Any]]:
-    """Left side of the equations as a cvxpy expression, and the Gram matrices in it."""
-    import cvxpy as cp
-    import scipy.sparse as sp
-
-    grams = [cp.Variable((len(B), len(B)), symmetric=True) for B in bases if B]
-    numbers = [i for i, B in enumerate(bases) if B]
-    expression: Any = 0
-    for G, which in zip(grams, numbers, strict=True):
-        n = len(bases[which])
-        entries, rows, places = [], [], []
-        for r, row in enumerate(equations.matrix):
-            for column, value in row.items():
-                w, p, q = equations.columns[column]
-                if w == which:
-                    entries.append(float(value))
-                    rows.append(r)
-                    places.append(q * n + p)
-        A = sp.csr_array((entries, (rows, places)), shape=(len(equations.rows), n * n))
-        expression = expression + A @ cp.vec(G, order="F")
-    return expression, grams
-
-
 def _interior(equations: _Equations, bases: list[Matrix], f: Array) -> tuple[float, list[Array]] | None:
     """Gram matrices with the largest least eigenvalue, and that eigenvalue."""
-    import cvxpy as cp
-
-    level = cp.Variable()
-    expression, grams = _gram_expression(equations, bases)
-    constraints = [expression == f, level <= 1e3]
-    constraints += [G - level * np.eye(G.shape[0]) >> 0 for G in grams]
-    if not _solve(cp.Problem(cp.Maximize(level), constraints)) or level.value is None:
-        return None
-    values = iter([np.asarray(G.value, dtype=float) for G in grams])
-    return float(level.value), [next(values) if B else np.zeros((0, 0)) for B in bases]
-
-
-def _solve(problem: Any) -> bool:
-    """Run Clarabel; whether it returned something to look at (never evidence of anything)."""
-    import cvxpy as cp
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)  # "may be inaccurate": nothing rests on its accuracy
-        try:
-            problem.solve(solver=cp.CLARABEL)
-        except cp.SolverError:
-            return False
-    return problem.status in (cp.OPTIMAL, cp.OPTIMAL_INACCURATE)
+    found = maximise_level(
+        sizes=[len(B) for B in bases],
+        equations=[{c: float(v) for c, v in row.items()} for row in equations.matrix],
+        columns=equations.columns,
+        right=f,
+        level_column=np.zeros(len(f)),
+        shift=1.0,
+        cap=1e3,
+    )
+    return None if found is None else (found.level, list(found.matrices))
 
 
 def _upper(grams: list[Array]) -> list[float]:
