@@ -33,9 +33,7 @@ def print_optimum(console: Console, study: OptimumStudy) -> None:
         + ("torque up to p g(t)." if gain else "full torque inside the windows.")
     )
     console.print()
-    table = plain_table(
-        "Least peak", "certified bound <=", "found", "gap", "standing", "local optima", "cells", "impulse"
-    )
+    table = plain_table("Least peak", "certified >=", "found", "gap", "standing", "local optima")
     for optimum in study.optima:
         answer, unit = optimum.answer, optimum.problem.norm.unit
         found = answer.history is not None
