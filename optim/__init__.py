@@ -21,6 +21,7 @@ _EXPORTS = {
     "TransferProblem": ".problem",
     "WindowProfile": ".problem",
     "minimum_peak": ".peak",
+    "minimum_time": ".peak",
 }
 
 __all__ = sorted(_EXPORTS)

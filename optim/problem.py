@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from fractions import Fraction
 from functools import cached_property
@@ -146,6 +146,23 @@ class TransferProblem:
     def horizon(self) -> Fraction:
         """Transfer time tf, s."""
         return self.window.knots[-1]
+
+    def until(self, horizon: Fraction) -> TransferProblem:
+        """State the same transfer with an earlier (or the same) transfer time.
+
+        Raises
+        ------
+        ValueError
+            If the horizon is not in (0, the problem's own].
+        """
+        if not 0 < horizon <= self.horizon:
+            raise ValueError(
+                f"the transfer time must be in (0, {float(self.horizon):g}] s, received {float(horizon):g} s"
+            )
+        pieces = [_cut(piece, horizon) for piece in self.window.pieces if piece.start < horizon]
+        knots = (Fraction(0), *(piece.end for piece in pieces))
+        window = PiecewisePolynomial(knots, tuple(piece.shape for piece in pieces))
+        return replace(self, window=window)
 
     @cached_property
     def unit_attitude(self) -> Array:

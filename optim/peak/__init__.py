@@ -3,6 +3,7 @@
 from .any_torque import FlownTorque, fly_torque
 from .history import TorqueHistory
 from .minimum_peak import minimum_peak
+from .minimum_time import LeastTime, minimum_time
 from .nlp import NonlinearProgram
 from .options import MultiStart, Refinement
 from .result import PeakAnswer, Search, Standing, Start, Switching
@@ -12,6 +13,7 @@ from .verify_answer import FlownHistory, fly_again
 __all__ = [
     "FlownHistory",
     "FlownTorque",
+    "LeastTime",
     "MultiStart",
     "NonlinearProgram",
     "PeakAnswer",
@@ -25,4 +27,5 @@ __all__ = [
     "fly_again",
     "fly_torque",
     "minimum_peak",
+    "minimum_time",
 ]
