@@ -78,7 +78,16 @@ def _plot_ready(sigma: SwitchingFunction) -> Switching:
     time = sigma.answer.shooting.scaled.units.time
     grid = np.linspace(0.0, 1.0, 5)
     times = (sigma.start[:, None] + sigma.length[:, None] * grid) * time
-    return Switching(times, sigma.at(grid) / time, switch_times(sigma), sigma.pontryagin_residual)
+    answer = sigma.answer
+    costate = -np.einsum("i,kij->kj", answer.multiplier, answer.sensitivity.adjoint)
+    return Switching(
+        times=times,
+        sigma=sigma.at(grid) / time,
+        switch_times=switch_times(sigma),
+        costate_times=answer.shooting.mesh.edges * time,
+        costate=costate * np.r_[np.ones(4), np.full(3, time)],
+        residual=sigma.pontryagin_residual,
+    )
 
 
 def at_rest_already(problem: TransferProblem) -> PeakAnswer:

@@ -9,6 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from .history import TorqueHistory
+from .mesh import Mesh
 from .propagate import Propagator
 from .shooting import Shooting
 from .terminal import residual
@@ -29,6 +31,13 @@ def bend(shooting: Shooting, control: Array, rng: np.random.Generator, size: flo
     level = size * max(float(np.abs(control).max()), 1e-3)
     extra = basis @ rng.normal(size=(4, 3)) * level * float(np.abs(shooting.scaled.control_matrix).max())
     return control + _as_control(shooting, extra)
+
+
+def stretched(history: TorqueHistory, mesh: Mesh) -> Array:
+    """Control of another history at the same fractions of the transfer, on the open cells (its own units)."""
+    middle = ((mesh.edges[1:] + mesh.edges[:-1]) / 2)[mesh.open] * history.edges[-1]
+    cell = np.clip(np.searchsorted(history.edges, middle, side="right") - 1, 0, len(history.control) - 1)
+    return np.asarray(history.control[cell])
 
 
 def _eigenaxis(shooting: Shooting) -> Array:

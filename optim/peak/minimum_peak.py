@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 from ..problem import TransferProblem
 from .assemble import at_rest_already, checked, without_history
 from .explain import arrives_by_itself, explain
-from .guess import bend, first_guess
+from .guess import bend, first_guess, stretched
 from .mesh import Mesh, build_mesh
 from .options import LocalSolver, MultiStart, Refinement
 from .refine import refined, smoothed
@@ -45,6 +46,7 @@ def minimum_peak(
     solver: LocalSolver | None = None,
     search: MultiStart | None = None,
     refinement: Refinement | None = None,
+    near: PeakAnswer | None = None,
 ) -> PeakAnswer:
     """Find the least p such that some torque with peak(torque(t)) <= p w(t) makes the transfer.
 
@@ -58,6 +60,9 @@ def minimum_peak(
         How many starts, from which seeds.
     refinement : Refinement, optional
         How fine a mesh.
+    near : PeakAnswer, optional
+        Answer of a neighbouring problem (in a sweep, say): its history, stretched to this transfer
+        time, is one more start.
 
     Returns
     -------
@@ -80,7 +85,7 @@ def minimum_peak(
         return at_rest_already(problem)
     scaled = scale(problem)
     mesh = coarse_mesh(problem, refinement.cells)
-    candidates, record = _search(scaled, mesh, fast, search)
+    candidates, record = _search(scaled, mesh, fast, search, near)
     if not candidates:
         return replace(
             without_history(
@@ -101,32 +106,45 @@ def minimum_peak(
 
 
 def _search(
-    scaled: ScaledProblem, mesh: Mesh, solver: LocalSolver, search: MultiStart
+    scaled: ScaledProblem, mesh: Mesh, solver: LocalSolver, search: MultiStart, near: PeakAnswer | None
 ) -> tuple[list[LocalAnswer], Search]:
     """Solve from every start on the coarse mesh; the feasible answers, cheapest first."""
     answers: list[LocalAnswer] = []
     starts: list[Start] = []
+    for sign, seed, control in _starts(scaled, mesh, search, near):
+        answer = solver.solve(Shooting(scaled, mesh, sign), control, tolerance=search.tolerance)
+        usable = answer.violation <= 1e-4
+        starts.append(
+            Start(
+                sign=sign,
+                seed=seed,
+                peak=answer.peak * scaled.units.control if usable else math.inf,
+                converged=answer.converged,
+                iterations=answer.iterations,
+            )
+        )
+        if usable:
+            answers.append(answer)
+    return sorted(answers, key=lambda a: a.peak), Search(tuple(starts))
+
+
+def _starts(
+    scaled: ScaledProblem, mesh: Mesh, search: MultiStart, near: PeakAnswer | None
+) -> Iterator[tuple[int, int | None, Array]]:
+    """Target sign, seed of the bend (None for none) and control of every start."""
+    if near is not None and near.history is not None:
+        control = stretched(near.history, mesh) / scaled.units.control
+        if control.shape[1] == scaled.control_matrix.shape[1]:
+            yield near.sign, None, control
     for number in range(search.starts):
         for sign in scaled.problem.signs:
             shooting = Shooting(scaled, mesh, sign)
             control = first_guess(shooting)
-            seed = None if number == 0 else search.seed + number - 1
-            if seed is not None:
-                control = bend(shooting, control, np.random.default_rng([seed, sign + 1]), search.bend)
-            answer = solver.solve(shooting, control, tolerance=search.tolerance)
-            usable = answer.violation <= 1e-4
-            starts.append(
-                Start(
-                    sign=sign,
-                    seed=seed,
-                    peak=answer.peak * scaled.units.control if usable else math.inf,
-                    converged=answer.converged,
-                    iterations=answer.iterations,
-                )
-            )
-            if usable:
-                answers.append(answer)
-    return sorted(answers, key=lambda a: a.peak), Search(tuple(starts))
+            if number == 0:
+                yield sign, None, control
+                continue
+            seed = search.seed + number - 1
+            yield sign, seed, bend(shooting, control, np.random.default_rng([seed, sign + 1]), search.bend)
 
 
 def _finish(

@@ -86,7 +86,7 @@ def minimum_time(
         if _ruled_out(trial, limit):
             low = middle
             continue
-        answer = minimum_peak(trial, search=search, refinement=refinement)
+        answer = minimum_peak(trial, search=search, refinement=refinement, near=best)
         solves += 1
         if answer.standing is Standing.CHECKED and answer.peak <= limit:
             high, best = middle, answer

@@ -90,6 +90,11 @@ class Switching:
     switch_times : tuple of (float, int)
         Instants, s, at which component j of the best control changes sides (Euclidean: the
         direction swings round; j = -1).
+    costate_times : (c + 1,)
+        Cell edges, s.
+    costate : (c + 1, 7)
+        Derivative of -(multiplier . terminal residual) by the state (quaternion, rate in rad/s) at the
+        edges, in the same normalisation; free of any choice of units but the second and radian.
     residual : float
         Integral of w (p support(sigma) - sigma . control) / p: 0 where Pontryagin's condition holds.
     """
@@ -97,6 +102,8 @@ class Switching:
     times: Array
     sigma: Array
     switch_times: tuple[tuple[float, int], ...]
+    costate_times: Array
+    costate: Array
     residual: float
 
 

@@ -97,3 +97,32 @@ def test_half_turn_of_the_cube_has_the_known_number_of_switches():
     answer = minimum_peak(problem, search=MultiStart(starts=6))
     assert answer.peak == pytest.approx(1.0, abs=5e-4)
     assert len(answer.switching.switch_times) == 5
+
+
+def test_costates_obey_their_own_equation_on_a_free_arc():
+    """Rate costates between windows, against differences of the flow: y . residual is constant along it."""
+    problem = paper_transfer(LargestComponent(), horizon="11.22")
+    answer = solved(problem, 8)
+    flown, y = answer.flight, answer.multiplier
+    arc = int(np.flatnonzero(~answer.shooting.mesh.open)[1])
+    first, second = (y @ answer.sensitivity.adjoint[k] for k in (arc, arc + 1))
+    rng = np.random.default_rng(4)
+    for _ in range(5):
+        change = rng.normal(size=7) * 1e-6
+        moved = []
+        for sign in (1, -1):
+            states = flown.states[:-1].copy()
+            states[arc] += sign * change
+            moved.append(answer.shooting.propagator._single_steps(states, flown.torque)[arc])
+        assert first @ change == pytest.approx(second @ (moved[0] - moved[1]) / 2, rel=1e-6)
+
+
+def test_a_neighbour_is_a_start():
+    from intermit.optim.peak import MultiStart, minimum_peak
+
+    first = minimum_peak(paper_transfer(Euclidean(), horizon="11.22"), search=ONE)
+    second = minimum_peak(
+        paper_transfer(Euclidean(), horizon="11.12"), search=MultiStart(starts=1), near=first
+    )
+    assert second.search.starts[0].iterations <= second.search.starts[1].iterations
+    assert len(second.search.starts) == 3
