@@ -31,7 +31,6 @@ def run(
     """
     del debug
     from ..scenario import load_scenario
-    from ..study.case import CaseOptions
     from ..study.check import CheckOptions, run_check
     from ..study.counting import exit_code
     from .check_page import print_check
@@ -44,8 +43,8 @@ def run(
     for scenario in loaded:
         for warning in scenario.warnings:
             note(f"warning: {warning}")
-    case = CaseOptions(margins=margins, search=search)
-    options, studies = CheckOptions(simulate=simulate, case=case, workers=workers), []
+    options = CheckOptions(simulate=simulate, margins=margins, search=search, workers=workers)
+    studies = []
     for scenario in loaded:
         with progress(scenario.name) as step:
             studies.append(run_check(scenario, options, step))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import final
 
 from ..scenario import Scenario
@@ -26,13 +26,15 @@ class CheckOptions:
     Attributes
     ----------
     simulate : run every law from the initial state
-    case : how much is asked about each law
+    margins : look for how far schedule and lambda may change before convergence is no longer certified
+    search : look for the worst start by simulation
     workers : processes; more than 1 only from a program that guards its main module
         (`if __name__ == "__main__"`). The result does not depend on it.
     """
 
     simulate: bool = True
-    case: CaseOptions = field(default_factory=CaseOptions)
+    margins: bool = True
+    search: bool = True
     workers: int = 1
 
 
@@ -82,12 +84,13 @@ def run_check(
     counted_keys(scenario)
     tell("schedule", 0.0)
     schedule = count(scenario_claims(scenario), scenario)
+    wanted = CaseOptions(margins=options.margins, search=options.search)
     runs, jobs = [], []
     for choice in scenario.laws:
         tell(f"{choice.label}: simulation", 0.05)
         run = run_law(scenario, choice.build()) if options.simulate else None
         runs.append(run)
-        jobs.append((scenario, choice, seen_in(scenario, run), options.case))
+        jobs.append((scenario, choice, seen_in(scenario, run), wanted))
     findings = find_all(jobs, options.workers, tell)
     cases = (
         Case(choice, found, count(found.claims, scenario), run)
