@@ -52,7 +52,7 @@ def random_question(seed: int) -> FloorQuestion:
     k0 = decimal(rng.uniform(0.5, 1.5) / (mean * float(period)))
     gamma = decimal(rng.uniform(0.02, 1.0) * float(k0) / float(R0))
     law = AdaptiveScaling(lambda_=lam, R0=R0, k0=k0, gamma=gamma)
-    return FloorQuestion(law=law, options=FloorOptions(max_bins=16), **common)
+    return FloorQuestion(law=law, options=FloorOptions(max_bins=10), **common)
 
 
 def random_inertia(rng):
@@ -76,7 +76,7 @@ class Attack:
     settled: float
 
 
-def attack(seed: int, *, periods: int = 4) -> Attack:
+def attack(seed: int, *, periods: int = 3) -> Attack:
     """Certify a random scenario and simulate 50 adversarial starts against every bound."""
     q = random_question(seed)
     found = answer(q)

@@ -24,12 +24,20 @@ from ..enclosure.balls import fraction_above, fraction_below
 from ..enclosure.bernstein import Bernstein, rational
 from ..enclosure.stepping import Modes
 from .adaptive_tail import AdaptiveTailSystem
-from .comparison import BLIND, ONE, ROUND_UP, TWO, angle_factor, angle_factor_float
+from .comparison import BLIND, ONE, ROUND_UP, TWO, angle_factor, angle_factor_float, at_least_tiny
 from .sets import InitialSet
 from .witness import Array, LawComparison
 
 NEGLIGIBLE = 0.02
 """A lower bound of s below this share of the upper one is given up: it no longer helps."""
+
+
+FAINT = 1e-3
+"""Likewise for y, which enters as its square."""
+
+
+ABOVE_ROUNDING = 1e-11
+"""Relative slack of k per second, so that its slope is not lost in the rounding of its value."""
 
 
 @final
@@ -99,9 +107,10 @@ class AdaptiveSystem(LawComparison):
         }
 
     def loosened(self, state: Sequence[float], modes: Modes) -> tuple[float, ...]:
-        """Give up the lower bound of s where it no longer helps."""
-        y, s, *rest = state
-        return (y, 0.0 if modes[0] == "zero" else s, *rest)
+        """Give up lower bounds of y and s where they no longer help; keep upper ones off underflow."""
+        y, s, k, r, Y, Z, L, U = state
+        low = (0.0 if y < FAINT * Y else y, 0.0 if modes[0] == "zero" else s)
+        return (*low, k, r, at_least_tiny(Y), at_least_tiny(Z), L, U)
 
     def choices(self, state: Sequence[float], peak: float) -> Sequence[Modes]:
         """How to bound f from above, best now first; whether the lower bound of s is kept."""
@@ -150,6 +159,7 @@ class AdaptiveSystem(LawComparison):
         }[modes[1]]()
         gamma = self._gamma
         gain_scale = slack * peak * gamma * U * 2.0 * (Y * Y + 2.0 * self._a * T)
+        gain_scale += ABOVE_ROUNDING * peak * (L + lam)
         return (
             -low_pull * y - scale * y,
             s_rate,

@@ -70,7 +70,7 @@ class AdaptiveTailSystem(PeriodicSystem):
             -lam * r + G * (2.0 - T) - slack * (lam * r + peak),
             (scale - pull) * Y,
             self._coupling * Y * (1.0 + 0.1 * slack) + (scale - pull) * Z,
-            intake * (G + slack * peak),
+            intake * (G + slack * peak) + 1e-11 * peak * (L + lam),
             -lam * U + 2.0 * G + slack * (lam * U + peak),
         )
 

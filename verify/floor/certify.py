@@ -23,8 +23,14 @@ from .sets import InitialSet
 from .tail import Tail, find_tail
 from .witness import LawComparison, Witness
 
+NEAR_BLIND = 1.9
+"""Above this S = 1 - b0 (308 deg) a witness that got stuck is taken to have lost the error angle."""
 WINDOW_BUDGET = 240
-"""Bins times windows of a finite table."""
+"""Bins times windows of a table or a period."""
+
+
+LARGEST_PERIOD = 100
+"""Windows a period may have; of longer ones only this many are certified, and no tail is looked for."""
 
 
 @final
@@ -82,6 +88,13 @@ class Floor:
     def steps(self) -> int:
         """Number of proved steps."""
         return sum(sum(1 for _ in w.all_steps()) for w in self.witnesses)
+
+    @property
+    def lost_angle(self) -> bool:
+        """Whether it got stuck because a bound of the error angle reached 2 pi."""
+        lost = [w for w in self.witnesses if w.stuck is not None]
+        gaps = [w.boxes[-1].cosine_gap if w.steps else w.initial.s_high**2 for w in lost]
+        return max(gaps, default=0.0) > NEAR_BLIND
 
     @property
     def stuck(self) -> Fraction | None:
@@ -171,7 +184,7 @@ class _Run:
                 steps += self._stepper().run(self.schedule, start, stop, values)
             except CannotProceedError as stuck:
                 return Witness(self.system, early.initial, (*steps, *stuck.steps), stuck=stuck.time)
-            if period is None:
+            if period is None or stop % period != 0:
                 continue
             least = min(least, *(min(s.controls["r"]) for s in steps if s.start >= start))
             tail = self._tail(stop, tuple(steps[-1].end_state().values()))
@@ -191,6 +204,9 @@ class _Run:
         if period is None:
             assert self.horizon is not None
             return [(start, self.horizon)] if start < self.horizon else []
+        if len(self.schedule.windows) > LARGEST_PERIOD:
+            stop = self.schedule.windows[LARGEST_PERIOD].on
+            return [(start, stop)] if start < stop else []
         first = start // period + 1
         ends = [n * period for n in range(first, max(first, self.options.max_periods) + 1)]
         return list(zip([start, *ends[:-1]], ends, strict=True))
@@ -220,10 +236,10 @@ class _Run:
 
     @property
     def _max_bins(self) -> int:
-        """Bins, fewer for long finite tables: the work is bins times windows."""
-        if self.schedule.period is not None or self.horizon is None:
-            return self.options.max_bins
-        windows = sum(1 for _ in self.schedule.windows_between(Fraction(0), self.horizon))
+        """Bins, fewer for long tables: the work is bins times windows."""
+        windows = min(len(self.schedule.windows), LARGEST_PERIOD)
+        if self.schedule.period is None and self.horizon is not None:
+            windows = sum(1 for _ in self.schedule.windows_between(Fraction(0), self.horizon))
         return max(1, min(self.options.max_bins, WINDOW_BUDGET // max(windows, 1)))
 
     @staticmethod

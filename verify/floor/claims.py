@@ -262,6 +262,11 @@ def _search_evidence(facts: FloorFacts) -> tuple[Evidence, ...]:
 
 
 def _shortfall(floor: Floor) -> tuple[str, str]:
+    if floor.stuck is not None and not floor.lost_angle:
+        return (
+            f"no further step could be proved from t = {float(floor.stuck):.4g} s",
+            "split the initial set finer (max_bins), or narrow it",
+        )
     if floor.stuck is not None:
         return (
             f"the certified bound of the error angle reaches 2 pi at t = {float(floor.stuck):.4g} s: beyond "

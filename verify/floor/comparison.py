@@ -94,3 +94,8 @@ def angle_factor(S: Bernstein) -> Bernstein:
 def angle_factor_float(S: float) -> float:
     """A(S) in floats."""
     return 1.0 - S * (0.25 + 0.03125 * S)
+
+
+def at_least_tiny(value: float) -> float:
+    """Raise a positive upper bound to 1e-60, far from underflow; leave 0, which stays 0 by itself."""
+    return max(value, 1e-60) if value > 0 else value

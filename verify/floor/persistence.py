@@ -24,7 +24,7 @@ import numpy as np
 from ..enclosure.balls import fraction_below
 from ..enclosure.bernstein import Bernstein, rational
 from ..enclosure.stepping import Modes
-from .comparison import BLIND, NO_BOUND, ONE, ROUND_UP, TWO, angle_factor, angle_factor_float
+from .comparison import BLIND, NO_BOUND, ONE, ROUND_UP, TWO, angle_factor, angle_factor_float, at_least_tiny
 from .sets import InitialSet
 from .witness import Array, LawComparison
 
@@ -103,9 +103,10 @@ class PersistenceSystem(LawComparison):
         return tuple((angle, f) for f in filters)
 
     def loosened(self, state: Sequence[float], modes: Modes) -> tuple[float, ...]:
-        """Give up s where its bound has reached sqrt 2."""
+        """Give up s where its bound has reached sqrt 2; keep upper bounds off underflow."""
         K, y, s, v, z, r = state
-        return (K, y, NO_BOUND if modes[0] == "blind" else s, v, z, r)
+        s = NO_BOUND if modes[0] == "blind" else s
+        return (K, at_least_tiny(y), at_least_tiny(s), at_least_tiny(v), at_least_tiny(z), r)
 
     def rate(
         self, gain_square: float, state: Sequence[float], modes: Modes, peak: float, slack: float

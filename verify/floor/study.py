@@ -12,7 +12,7 @@ from ...models.schedule import Schedule
 from ..convergence import Convergence, analyse_convergence
 from ..verdict import Claim
 from .certificate import floor_certificate
-from .certify import Floor, FloorOptions, certify_floor
+from .certify import LARGEST_PERIOD, Floor, FloorOptions, certify_floor
 from .claims import FloorFacts, convergence_claim, floor_claim, reaches_far_enough, torque_claim
 from .comparison import BodyBounds
 from .converged import ConvergedFilter, ConvergedFloor
@@ -39,7 +39,8 @@ class FloorQuestion:
     torque_limit, torque_norm : limit on the applied torque, N m, or None
     run_floor : least R of the scenario's own run and that run's horizon, s, or None
     run_peak : largest applied torque of that run in `torque_norm`, N m, or None
-    horizon : end of the time asked about where the table is finite, s; None is the table's end
+    horizon : end of the time asked about where the table is finite, s; None is the table's
+        end, or its 100th window
     search : how hard to look for the worst start; None skips the search
     options : how hard to certify
     """
@@ -100,12 +101,16 @@ class FloorAnswer:
 def answer(question: FloorQuestion) -> FloorAnswer:
     """Answer a question about the floor of R."""
     q = question
-    horizon = None if q.schedule.period is not None else min(q.horizon or q.schedule.end, q.schedule.end)
+    horizon = None
+    if q.schedule.period is None:
+        last = q.schedule.windows[:LARGEST_PERIOD][-1].off
+        horizon = min(q.horizon, q.schedule.end) if q.horizon is not None else min(last, q.schedule.end)
     floor = certify_floor(q.law, q.bounds, q.schedule, q.initial, horizon=horizon, options=q.options)
     decay = q.law.parameters.get("lambda")
     has_filter = any(s.name == "R" for s in q.law.controller_states)
     converged = None
-    if q.schedule.period is not None and has_filter and decay is not None and decay > 0:
+    short = q.schedule.period is not None and len(q.schedule.windows) <= LARGEST_PERIOD
+    if short and has_filter and decay is not None and decay > 0:
         converged = ConvergedFilter(q.schedule, decay).floor()
     worst = None
     if q.search is not None and has_filter:

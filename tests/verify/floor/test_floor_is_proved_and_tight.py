@@ -103,3 +103,23 @@ def test_sets_hold_their_states():
     assert state.s_low <= np.sqrt(0.5) <= state.s_high <= state.s_low + 1e-12
     assert state.y_low <= np.sqrt(0.0305) <= state.y_high <= state.y_low + 1e-12
     assert state.s_high <= EXAMPLE.s_high + 1e-12
+
+
+@pytest.mark.parametrize("law", [PERSISTENCE, ADAPTIVE])
+def test_long_tables_are_covered_though_the_state_fades_to_nothing(law):
+    """After 45 periods the angle is below 1e-8: no bound underflows or drowns in rounding."""
+    windows = [Window(F(8 * k) + F("0.01"), F(8 * k) + F("3.21")) for k in range(45)]
+    finite = build_schedule(windows, Hermite(F("0.01")))
+    options = FloorOptions(max_bins=1)
+    start = InitialSet.from_state(J1, [F(1, 2)] * 4, [F(0)] * 3)
+    floor = certify_floor(law, BOUNDS, finite, start, horizon=F(360), options=options)
+    assert floor.horizon == 360
+    assert floor.witnesses[0].boxes[-1].cosine_gap < 1e-16
+
+
+def test_endless_periods_of_very_many_windows_are_cut_not_chewed():
+    windows = [Window(F(4 * k), F(4 * k + 2)) for k in range(150)]
+    schedule = build_schedule(windows, Hermite(), period=F(600))
+    floor = certify_floor(PERSISTENCE, BOUNDS, schedule, EXAMPLE)
+    assert floor.horizon == 400
+    assert floor.stuck is None
