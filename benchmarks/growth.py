@@ -34,10 +34,10 @@ def timed(work: Callable[[], object]) -> float:
 
 
 def blocks(count: int) -> Iterator[tuple[np.ndarray, ...]]:
-    x, t = states(BLOCK)
+    x = states(BLOCK)
     for start in range(0, count, BLOCK):
         size = min(BLOCK, count - start)
-        yield x[:, :size], t[:, :size], PARAMETERS, BODY, CONSTANTS
+        yield x[:, :size], PARAMETERS, BODY, CONSTANTS
 
 
 def samples(scale: float) -> tuple[Series, list[str]]:

@@ -23,11 +23,11 @@ LEAST = float(J1.principal_inertias[0])
 LOOP = close_loop(LAW)
 PARAMETERS, BODY = LOOP.parameter_values(), body_values(J1)
 CONSTANTS = np.array([1.0, TARGET, LEAST])
-UNIFORM = (2, 3, 4)
+UNIFORM = (1, 2, 3)
 
 
 def check_function() -> Any:
-    """(state, time, parameters, body, (a, k*, Jmin)) -> V, V', the paper's bound."""
+    """((state, g, g'), parameters, body, (a, k*, Jmin)) -> V, V', the paper's bound."""
     storage, constants = weighted_storage(LOOP), ca.SX.sym("constants", 3)
     a, target, least = constants[0], constants[1], constants[2]
     b0, R, lam = LOOP.plant.b0, LOOP.controller_states["R"], LOOP.parameter_symbols["lambda"]
@@ -36,22 +36,23 @@ def check_function() -> Any:
     outputs = ca.substitute(
         [storage.value, storage.derivative, bound], [storage.weight, storage.gain_target], [a, target]
     )
-    return ca.Function("check", [*LOOP.arguments, constants], outputs)
+    coordinates = ca.vertcat(LOOP.state, LOOP.time)
+    return ca.Function("check", [coordinates, LOOP.parameters, LOOP.body, constants], outputs)
 
 
-def states(count: int) -> tuple[np.ndarray, np.ndarray]:
+def states(count: int) -> np.ndarray:
+    """Random states with g and g', (11, N)."""
     rng = np.random.default_rng(1)
     x = rng.normal(size=(9, count))
     x[:4] /= np.linalg.norm(x[:4], axis=0)
     x[7], x[8] = rng.uniform(0.15, 2, count), rng.uniform(0, 6, count)
-    t = np.stack([rng.uniform(0, 1, count), rng.uniform(-1.9, 1.9, count)])
-    return x, t
+    return np.vstack([x, rng.uniform(0, 1, count), rng.uniform(-1.9, 1.9, count)])
 
 
-def by_hand(x: np.ndarray, t: np.ndarray) -> list[np.ndarray]:
+def by_hand(x: np.ndarray) -> list[np.ndarray]:
     """The same in numpy, as one would write it: whole (3, N) arrays."""
     J, (lam, gamma) = J1.inertia, PARAMETERS[:1].tolist() + PARAMETERS[1:2].tolist()
-    b0, b, w, R, k, (g, gd) = x[0], x[1:4], x[4:7], x[7], x[8], t
+    b0, b, w, R, k, (g, gd) = x[0], x[1:4], x[4:7], x[7], x[8], x[9:]
     Omega = w + 2 * g**2 * k * b
     JO, Jw, Jb = J @ Omega, J @ w, J @ b
     energy, away = np.sum(Omega * JO, axis=0), 1 - b0
@@ -71,21 +72,19 @@ def by_hand(x: np.ndarray, t: np.ndarray) -> list[np.ndarray]:
 
 
 def contenders(count: int) -> tuple[list[Contender], Any]:
-    function, (x, t) = check_function(), states(count)
+    function, x = check_function(), states(count)
     slow = min(count, 1 << 16)
 
     def columns() -> Any:
-        return lambda: [
-            np.asarray(r) for r in function(x[:, :slow], t[:, :slow], PARAMETERS, BODY, CONSTANTS)
-        ]
+        return lambda: [np.asarray(r) for r in function(x[:, :slow], PARAMETERS, BODY, CONSTANTS)]
 
     def mapped() -> Any:
         size = min(slow, 4096)
-        many = function.map("many", "serial", size, [2, 3, 4], [])
+        many = function.map("many", "serial", size, [1, 2, 3], [])
         buffer, evaluate = many.buffer()
-        xs, ts = np.empty((size, 9)), np.empty((size, 2))
+        xs = np.empty((size, 11))
         results = [np.empty(size) for _ in range(3)]
-        inputs = (xs, ts, PARAMETERS, BODY, CONSTANTS)
+        inputs = (xs, PARAMETERS, BODY, CONSTANTS)
         for i, values in enumerate(inputs):
             buffer.set_arg(i, values.data)
         for i, values in enumerate(results):
@@ -94,7 +93,7 @@ def contenders(count: int) -> tuple[list[Contender], Any]:
         def run() -> list[np.ndarray]:
             out = np.empty((3, slow))
             for start in range(0, slow, size):
-                xs[:], ts[:] = x[:, start : start + size].T, t[:, start : start + size].T
+                xs[:] = x[:, start : start + size].T
                 evaluate()
                 out[:, start : start + size] = results
             return list(out)
@@ -105,12 +104,10 @@ def contenders(count: int) -> tuple[list[Contender], Any]:
     def hand(block: int | None) -> Any:
         def run() -> list[np.ndarray]:
             if block is None:
-                return by_hand(x, t)
+                return by_hand(x)
             out = np.empty((3, count))
             for start in range(0, count, block):
-                out[:, start : start + block] = by_hand(
-                    x[:, start : start + block], t[:, start : start + block]
-                )
+                out[:, start : start + block] = by_hand(x[:, start : start + block])
             return list(out)
 
         return run
@@ -119,10 +116,10 @@ def contenders(count: int) -> tuple[list[Contender], Any]:
         if backend == "fast" and not heyoka_available():
             raise Missing("heyoka")
         many = sample_function(shared(walk(function)), uniform=UNIFORM, backend=backend)
-        results = [np.empty((1, count)) for _ in range(3)]
+        results = many.allocate(count)
 
         def run() -> list[np.ndarray]:
-            many.into((x, t, PARAMETERS, BODY, CONSTANTS), results)
+            many.into((x, PARAMETERS, BODY, CONSTANTS), results)
             return results
 
         return run

@@ -67,7 +67,7 @@ class ArrayFunction(BlockFunction):
             self._body(rows, results, self._buffers(stop - start), known, start, stop)
 
     def _buffers(self, count: int) -> Array:
-        """Buffers of the calling thread, packed for `count` samples (a power-of-two stride would thrash)."""
+        """Buffers of the calling thread, packed for `count` samples."""
         memory: Array | None = getattr(self._local, "memory", None)
         if memory is None:
             self._local.memory = memory = np.empty(self.buffer_count * self.block)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,8 +13,9 @@ from .walk import Program, check_arguments
 
 Array = NDArray[np.float64]
 
-BLOCK = 4096
-"""Samples a block: a program's live buffers (some thirty of 32 kB) stay in the second-level cache."""
+BLOCK = 6144
+"""Samples a block: a program's live buffers (some thirty of 48 kB) stay in the second-level cache.
+No power of two: buffers a power of two apart fight for the same lines of the cache."""
 
 
 class BlockFunction(ABC):
@@ -44,9 +46,15 @@ class BlockFunction(ABC):
     def __call__(self, *arguments: Array) -> list[Array]:
         """Evaluate (n_i, N) arrays, one row an element (uniform ones (n_i,)), into new (m_j, N) arrays."""
         rows, count = self._check(arguments)
-        results = [np.empty((size, count)) for size in self._result_sizes]
+        results = self.allocate(count)
         self._evaluate(rows, results, count)
         return results
+
+    def allocate(self, count: int) -> list[Array]:
+        """Room for the results of `count` samples, (m_j, count) each: consecutive rows of one array."""
+        room = np.empty((sum(self._result_sizes), count))
+        edges = np.cumsum([0, *self._result_sizes])
+        return [room[a:b] for a, b in pairwise(edges)]
 
     def into(self, arguments: Sequence[Array], results: Sequence[Array]) -> None:
         """Evaluate into existing (m_j, N) arrays, apart from the arguments; allocates nothing of size N."""
@@ -68,11 +76,10 @@ class BlockFunction(ABC):
         held: list[Array] = []
         for arguments in blocks:
             rows, count = self._check(arguments)
-            if not held or held[0].shape[1] < count:
-                held = [np.empty((size, count)) for size in self._result_sizes]
-            views = [h[:, :count] for h in held]
-            self._evaluate(rows, views, count)
-            yield views
+            if not held or held[0].shape[1] != count:
+                held = self.allocate(count)
+            self._evaluate(rows, held, count)
+            yield held
 
     def _check(self, arguments: Sequence[Array]) -> tuple[list[Array], int]:
         rows = [np.asarray(a, dtype=float) for a in arguments]

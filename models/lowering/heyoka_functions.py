@@ -15,54 +15,73 @@ from .walk import Program
 Array = NDArray[np.float64]
 
 HEYOKA_BLOCK = 4096
+KEPT = 8
+"""Compiled functions kept, one for each set of uniform arguments."""
 
 
 @final
 class HeyokaFunction(BlockFunction):
     """A program compiled for the machine's vector width.
 
-    Compiling costs some 0.1 to 0.5 s, so this pays from about 10 million samples on. Results agree
-    with CasADi's to rounding (sums may be reordered), not bit for bit.
+    Uniform arguments become constants of the compiled function; compiling takes some 0.1 to 0.5 s
+    for each set of them, so this pays from about 10 million samples on. Results agree with CasADi's
+    to rounding (sums may be reordered), not bit for bit. Quickest with a single varying argument,
+    whose rows need no copying.
     """
 
     def __init__(self, program: Program, *, uniform: Sequence[int] = (), block: int = HEYOKA_BLOCK) -> None:
         super().__init__(program, uniform=uniform, block=block)
+        self._varying = [i for i in range(len(program.argument_sizes)) if i not in self.uniform]
+        self._compiled: dict[bytes, Any] = {}
+        heyoka_expressions(program, self._arguments([np.ones(n) for n in program.argument_sizes]))
+
+    def _arguments(self, rows: Sequence[Array]) -> list[list[Any]]:
+        """Variables for what varies, constants for what does not."""
         hy = load_heyoka()
-        varying = [i for i in range(len(program.argument_sizes)) if i not in self.uniform]
-        names = {i: [f"x{i}_{e}" for e in range(program.argument_sizes[i])] for i in varying}
-        variables = {i: [hy.expression(name) for name in names[i]] for i in varying}
-        arguments: list[list[Any]] = []
-        parameters = 0
-        for i, size in enumerate(program.argument_sizes):
-            if i in self.uniform:
-                arguments.append([hy.par[parameters + e] for e in range(size)])
-                parameters += size
-            else:
-                arguments.append(variables[i])
-        outputs = [e for row in heyoka_expressions(program, arguments) for e in row]
-        self._varying = varying
-        self._function = hy.cfunc(outputs, [v for i in varying for v in variables[i]])
-        self._parameter_count = int(self._function.nparams)
+        return [
+            [hy.expression(float(c)) for c in rows[i]]
+            if i in self.uniform
+            else [hy.expression(f"x{i}_{e}") for e in range(size)]
+            for i, size in enumerate(self.program.argument_sizes)
+        ]
+
+    def _function(self, rows: Sequence[Array]) -> Any:
+        """The compiled function for these uniform arguments."""
+        key = b"".join(rows[i].tobytes() for i in sorted(self.uniform))
+        if key not in self._compiled:
+            arguments = self._arguments(rows)
+            outputs = [e for row in heyoka_expressions(self.program, arguments) for e in row]
+            if len(self._compiled) >= KEPT:
+                del self._compiled[next(iter(self._compiled))]
+            variables = [v for i in self._varying for v in arguments[i]]
+            self._compiled[key] = load_heyoka().cfunc(outputs, variables)
+        return self._compiled[key]
 
     def _evaluate(self, rows: Sequence[Array], results: Sequence[Array], count: int) -> None:
+        function = self._function(rows)
+        whole, out = rows[self._varying[0]], _joined(results)
+        if len(self._varying) == 1 and whole.flags.c_contiguous and out is not None:
+            function(whole, outputs=out, batch_parallel=False)
+            return
         size = min(self.block, max(count, 1))
-        inputs = np.empty((sum(len(rows[i]) for i in self._varying), size))
-        outputs = np.empty((sum(len(r) for r in results), size))
-        uniform = np.concatenate([rows[i] for i in sorted(self.uniform)]) if self.uniform else np.empty(0)
-        # unused trailing parameters are not part of the compiled function
-        parameters = np.ascontiguousarray(np.repeat(uniform[: self._parameter_count, None], size, axis=1))
         for start in range(0, count, size):
-            stop = min(start + size, count)
-            if stop - start < size:
-                inputs, outputs, parameters = (
-                    np.ascontiguousarray(a[:, : stop - start]) for a in (inputs, outputs, parameters)
-                )
-            row = 0
-            for i in self._varying:
-                inputs[row : row + len(rows[i])] = rows[i][:, start:stop]
-                row += len(rows[i])
-            self._function(inputs, outputs=outputs, pars=parameters, batch_parallel=False)
-            row = 0
+            part = slice(start, min(start + size, count))
+            inputs = np.concatenate([rows[i][:, part] for i in self._varying])
+            outputs, row = function(inputs, batch_parallel=False), 0
             for result in results:
-                result[:, start:stop] = outputs[row : row + len(result)]
+                result[:, part] = outputs[row : row + len(result)]
                 row += len(result)
+
+
+def _joined(results: Sequence[Array]) -> Array | None:
+    """The one contiguous array of which the results are the rows, in order; None if there is none."""
+    base = results[0].base
+    if not isinstance(base, np.ndarray) or base.ndim != 2 or not base.flags.c_contiguous:
+        return None
+    row = 0
+    for result in results:
+        rows = base[row : row + len(result)]
+        if result.shape != rows.shape or result.ctypes.data != rows.ctypes.data:
+            return None
+        row += len(result)
+    return base if row == len(base) else None
