@@ -24,6 +24,7 @@ COMMANDS = (
     "paper",
     "certify",
     "recheck",
+    "audit",
 )
 """Modules of this room that are commands, in the order of the help page; `_` is spelled `-`."""
 

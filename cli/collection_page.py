@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from ..reports.record import Record
 
-SECTIONS = ("comparison", "tuning", "front", "schedule_study", "paper_claims")
+SECTIONS = ("comparison", "tuning", "front", "schedule_study", "paper_claims", "audit")
 
 
 def print_collections(console: Console, record: Record) -> None:
