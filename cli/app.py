@@ -25,10 +25,11 @@ COMMANDS = (
     "certify",
     "recheck",
     "audit",
+    "report",
 )
 """Modules of this room that are commands, in the order of the help page; `_` is spelled `-`."""
 
-INPUT_ERRORS = frozenset({"ScenarioError", "RecordError", "CertificateError"})
+INPUT_ERRORS = frozenset({"ScenarioError", "RecordError", "FolderError", "CertificateError"})
 """Errors of the rooms below that the user can mend, by name: naming them imports nothing."""
 
 LONGEST_MESSAGE = 1000

@@ -8,9 +8,12 @@ from pathlib import Path
 from .content.blocks import charts_of
 from .content.budget import thin
 from .content.chapters import chapters
+from .content.comparing import comparison_chapters, comparison_sentence
 from .content.drawn import drawings, pdf_figures
+from .exports import export_files
 from .folder import read_extras, write_folder
 from .html import html_page
+from .html.page import render
 from .paper import paper_files
 from .pdf import pdf_document
 from .record import ARRAYS_NAME, DOCUMENT_NAME, Record, arrays_bytes, read_record
@@ -27,6 +30,7 @@ def report_files(record: Record) -> dict[str, bytes]:
     drawn = drawings(thin(charts_of(contents), DRAWN_POINTS))
     files["report.pdf"] = pdf_document(record, contents, drawn)
     kit = paper_files(record, contents, drawn | pdf_figures(drawn))
+    files |= export_files(record)
     return files | {f"paper/{name}": data for name, data in kit.items()}
 
 
@@ -37,8 +41,40 @@ def write_report(
     return write_folder(folder, report_files(record), extras=extras, force=force)
 
 
-def rebuild_report(source: str | Path, folder: str | Path, *, force: bool = False) -> Path:
-    """Write the pages again from a record on disk, computing nothing; its extras come along."""
+def rebuild_report(source: str | Path, folder: str | Path, *, force: bool = False) -> tuple[int, Path]:
+    """Write the pages again from a record on disk, computing nothing; its extras come along.
+
+    Returns the exit code the record holds, and the folder.
+    """
     record = read_record(source)
     home = Path(source) if Path(source).is_dir() else Path(source).parent
-    return write_report(record, folder, extras=read_extras(home), force=force)
+    return exit_code(record), write_report(record, folder, extras=read_extras(home), force=force)
+
+
+def comparison_files(a: Record, b: Record) -> dict[str, bytes]:
+    """Two records and the page that compares them."""
+    title = f"{a.document['title']} / {b.document['title']}"
+    page = render(title, comparison_sentence(a, b), a, comparison_chapters(a, b), other=b)
+    files = {"report.html": page.encode()}
+    for name, record in (("A", a), ("B", b)):
+        files[f"{name}/{DOCUMENT_NAME}"] = record.to_json().encode()
+        files[f"{name}/{ARRAYS_NAME}"] = arrays_bytes(record.arrays)
+    return files
+
+
+def write_comparison(
+    a: str | Path, b: str | Path, folder: str | Path, *, force: bool = False
+) -> tuple[int, Path]:
+    """Write the comparison of two records on disk; returns the worse exit code of the two, and the folder.
+
+    1 (refuted) is worse than 3 (undecided), which is worse than 0.
+    """
+    one, two = read_record(a), read_record(b)
+    codes = {exit_code(one), exit_code(two)}
+    worst = next((code for code in (1, 3) if code in codes), 0)
+    return worst, write_folder(folder, comparison_files(one, two), force=force)
+
+
+def exit_code(record: Record) -> int:
+    """Exit code of the study that made the record; 0 if it had none."""
+    return int(record.document.get("outcome", {}).get("exit_code", 0))

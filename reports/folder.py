@@ -53,11 +53,7 @@ def write_folder(
     folder = Path(os.path.realpath(target))
     everything = dict(extras or {}) | dict(files)
     everything[MANIFEST] = manifest(everything, tuple(extras or {}))
-    reason = foreign(folder)
-    if folder.exists() and not folder.is_dir():
-        raise FolderError(f"{folder} is a file; give a folder to write the report into")
-    if reason and not force:
-        raise FolderError(f"{folder} {reason}; give another folder, or force to write among them")
+    reason = refuse(folder, force=force)
     folder.parent.mkdir(parents=True, exist_ok=True)
     partial = Path(mkdtemp(prefix=f".{folder.name}.", suffix=".partial", dir=folder.parent))
     try:
@@ -70,6 +66,23 @@ def write_folder(
     finally:
         shutil.rmtree(partial, ignore_errors=True)
     return folder
+
+
+def refuse(target: str | Path, *, force: bool = False) -> str:
+    """Say before the work whether the target will be refused; returns what is foreign in it, if forced.
+
+    Raises
+    ------
+    FolderError
+        As `write_folder` would.
+    """
+    folder = Path(os.path.realpath(target))
+    if folder.exists() and not folder.is_dir():
+        raise FolderError(f"{folder} is a file; give a folder to write the report into")
+    reason = foreign(folder)
+    if reason and not force:
+        raise FolderError(f"{folder} {reason}; give another folder, or --force to write among them")
+    return reason
 
 
 def manifest(files: Mapping[str, bytes], extras: tuple[str, ...] = ()) -> bytes:

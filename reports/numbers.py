@@ -6,7 +6,7 @@ A quantity is known to lie in [low, high].
   digits (or is fewer than two), the interval itself, rounded outward;
 - an ordinary figure: digits whose unit is at least half the width, so that the last is uncertain
   by one at most; the interval if fewer than two are left;
-- a lower bound: low, rounded down; an upper bound: high, rounded up;
+- a lower bound: low, rounded down; an upper bound (or [0, high]): high, rounded up;
 - not available: a dash and the note.
 
 All rounding is decimal and exact on the stored double.
@@ -86,6 +86,8 @@ def write(quantity: Mapping[str, Any], *, most: int = MOST_DIGITS, unit: bool = 
         return _one("<=", high, ROUND_CEILING, min(most, BOUND_DIGITS), unit_name, rigorous, note)
     if low is None or high is None:
         return Written("", "", "", 0, unit_name, rigorous, note)
+    if low == 0 < high:
+        return _one("<=", high, ROUND_CEILING, min(most, BOUND_DIGITS), unit_name, rigorous, note)
     return _between(low, high, most, unit_name, rigorous, note)
 
 
@@ -132,7 +134,7 @@ def _shared(low: float, high: float, most: int) -> Decimal | None:
     for digits in range(most, 1, -1):
         a, b = (_rounded(x, digits, ROUND_HALF_EVEN) for x in (low, high))
         if a == b and a != 0 and digits >= min(useful, most) - 1:
-            return a
+            return a.normalize() if high - low <= 8 * math.ulp(high) else a
     return None
 
 

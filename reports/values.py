@@ -17,7 +17,8 @@ def plain(value: Any, where: str = "record") -> Any:
     """Turn a value into what JSON can say, without losing anything silently.
 
     Fractions and decimals become exact text ("3/8", "0.525"); infinities become "inf" and "-inf";
-    enums their value; numpy scalars and arrays numbers and lists; lone surrogates U+FFFD.
+    enums their value; numpy scalars and arrays numbers and lists; lone surrogates a question mark. Keys are
+    sorted, so that a record made and the same record read back are alike in every order.
 
     Raises
     ------
@@ -41,7 +42,8 @@ def plain(value: Any, where: str = "record") -> Any:
     if isinstance(value, np.ndarray):
         return plain(value.tolist(), where)
     if isinstance(value, Mapping):
-        return {str(plain(str(k), where)): plain(v, f"{where}.{k}") for k, v in value.items()}
+        entries = {str(plain(str(k), where)): plain(v, f"{where}.{k}") for k, v in value.items()}
+        return dict(sorted(entries.items()))
     if isinstance(value, (list, tuple)):
         return [plain(v, f"{where}[{i}]") for i, v in enumerate(value)]
     if isinstance(value, (set, frozenset)):

@@ -139,13 +139,15 @@ def case(name: str, label: str, adaptive: bool, gamma: float, arrays: dict[str, 
         np.linalg.norm(run["rate"], axis=1) > 1e-2
     )
     metrics = [
-        figure_of("peak_component", peak, digits=7, unit="N m", label="Peak torque, largest component"),
-        figure_of("peak_euclidean", norms.max(), digits=7, unit="N m", label="Peak torque, Euclidean"),
+        figure_of(
+            "peak_torque_component", peak, digits=7, unit="N m", label="Peak torque, largest component"
+        ),
+        figure_of("peak_torque_euclidean", norms.max(), digits=7, unit="N m", label="Peak torque, Euclidean"),
         figure_of(
             "impulse_euclidean", norms.sum() * (t[1] - t[0]), digits=4, unit="N m s", label="Angular impulse"
         ),
         figure_of("settling_time", t[outside].max(), digits=4, unit="s", label="Settling time"),
-        figure_of("filter_minimum", run["R"].min(), digits=7, unit="s", label="Least R along the run"),
+        figure_of("least_filter_state", run["R"].min(), digits=7, unit="s", label="Least R along the run"),
     ]
     floor_value = quantity(
         "filter_floor", floor.min(), unit="s", label="Certified floor of R", rigorous=True, side="lower"

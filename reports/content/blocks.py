@@ -44,18 +44,26 @@ class Cards:
 @final
 @dataclass(frozen=True)
 class Group:
-    """Claims under one heading."""
+    """Claims under one heading; `number` names it in anchors."""
 
     label: str
     claims: tuple[Mapping[str, Any], ...]
+    number: int = 0
+
+    def entries(self, *, counted: bool) -> tuple[tuple[str, Mapping[str, Any]], ...]:
+        """Anchor and claim, of those that decide the exit code or of the others."""
+        anchored = ((f"claim-{self.number}-{i + 1}", claim) for i, claim in enumerate(self.claims))
+        return tuple((a, claim) for a, claim in anchored if claim.get("counted", True) is counted)
 
 
 @final
 @dataclass(frozen=True)
 class Verdicts:
-    """The verdict table."""
+    """The verdict table: of the claims that count, or (folded away, with a summary) of the others."""
 
     groups: tuple[Group, ...]
+    counted: bool = True
+    summary: str = ""
 
 
 @final

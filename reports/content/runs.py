@@ -11,6 +11,7 @@ import numpy as np
 from ..record import Array, Record
 from .blocks import Axis, Block, Body, Chapter, Chart, Charts, Line, Replay, Table, Text
 from .problem import shaded
+from .verdicts import floors
 from .wording import plural
 
 TIME = Axis("time", "s")
@@ -147,7 +148,7 @@ def filter_chapter(record: Record) -> Chapter | None:
             if name is not None:
                 lines.append(Line(run.label, run.time, record.array(name), colour=i))
         if state == "R":
-            lines += _certified(record, "filter_floor", ": certified floor")
+            lines += _certified(record, "filter_floor", ": certified floor") + _constant_floors(record)
         if lines:
             alt = f"{words} over time, {plural(len(lines), 'line')}."
             charts.append(
@@ -174,6 +175,19 @@ def _certified(record: Record, role: str, suffix: str = "") -> list[Line]:
             if role in names:
                 t, values = record.array(names["time"]), record.array(names[role])
                 lines.append(Line(case["label"] + suffix, t, values, colour=i, dashed=True))
+    return lines
+
+
+def _constant_floors(record: Record) -> list[Line]:
+    """Draw a law's certified floor as a level over its run, where the record has a number but no curve."""
+    lines = []
+    for i, case in enumerate(record.sections.get("cases", ())):
+        runs, found = case.get("runs", ()), floors(case)
+        curves = any("filter_floor" in c.get("arrays", {}) for c in case.get("certificates", ()))
+        if runs and found and not curves:
+            t = record.array(runs[0]["arrays"]["time"])[[0, -1]]
+            level = np.full(2, float(found[0]["low"]))
+            lines.append(Line(f"{case['label']}: certified floor", t, level, colour=i, dashed=True))
     return lines
 
 

@@ -10,13 +10,21 @@ from .blocks import Block, Card, Cards, Chapter, ClaimDetails, Group, Text, Verd
 from .wording import plural
 
 VERDICTS = ("PROVED", "REFUTED", "UNDECIDED")
-HEADLINE_NUMBERS = ("peak_component", "peak_euclidean", "settling_time", "filter_minimum")
-"""Metrics of a run that stand on a law's card, if the record has them."""
+FLOORS = ("certified_floor", "filter_floor")
+"""Quantities of a certificate or a claim that are a certified floor of R."""
+HEADLINE_NUMBERS = (
+    ("peak_torque_component", "peak torque, largest component"),
+    ("peak_torque_euclidean", "peak torque, Euclidean"),
+    ("settling_time", "settling time"),
+    ("least_filter_state", "least R along the run"),
+)
+"""Metrics of a run that stand on a law's card, if the record has them, and what they are called there."""
 
 
 def groups(record: Record) -> tuple[Group, ...]:
     """Claims by subject: the study's own, the schedule's, each law's, the optimum's, the collections'."""
-    return tuple(Group(label, tuple(claims)) for label, claims in _groups(record.sections) if claims)
+    found = ((label, tuple(claims)) for label, claims in _groups(record.sections) if claims)
+    return tuple(Group(label, claims, i + 1) for i, (label, claims) in enumerate(found))
 
 
 def _groups(sections: Mapping[str, Any]) -> Iterator[tuple[str, list[Mapping[str, Any]]]]:
@@ -68,23 +76,38 @@ def verdict_chapter(record: Record) -> Chapter:
     if cards:
         blocks.append(Cards(cards))
     found = groups(record)
-    if found:
+    others = tuple(c for g in found for _, c in g.entries(counted=False))
+    if len(others) < sum(len(g.claims) for g in found):
         blocks.append(Verdicts(found))
+    if others:
+        blocks.append(Verdicts(found, counted=False, summary=_others(others)))
     blocks.extend(Text(note, "warning") for note in _warnings(record.sections))
     return Chapter("verdicts", "Verdicts", tuple(blocks))
 
 
+def _others(claims: tuple[Mapping[str, Any], ...]) -> str:
+    """Say how the findings that do not decide the outcome came out."""
+    verdicts = [c["verdict"] for c in claims]
+    parts = [f"{verdicts.count(v)} {v}" for v in VERDICTS if v in verdicts]
+    return f"Also found, not counted in the outcome: {', '.join(parts)}"
+
+
 def _card(case: Mapping[str, Any]) -> Card:
-    numbers = [
-        q
-        for c in case.get("certificates", ())
-        for q in c["quantities"]
-        if "floor" in q["name"] and q.get("rigorous")
-    ][:1]
+    numbers = [dict(q) | {"label": "certified floor of R"} for q in floors(case)][:1]
     for run in case.get("runs", ())[:1]:
         by_name = {q["name"]: q for q in run["metrics"]}
-        numbers += [by_name[name] for name in HEADLINE_NUMBERS if name in by_name]
+        numbers += [
+            dict(by_name[name]) | {"label": label} for name, label in HEADLINE_NUMBERS if name in by_name
+        ]
     return Card(case["label"], counted(tuple(case.get("claims", ()))), tuple(numbers))
+
+
+def floors(case: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """Certified floors of R, from the certificates or, without any, from the claims."""
+    holders = [*case.get("certificates", ()), *case.get("claims", ())]
+    return [
+        q for holder in holders for q in holder["quantities"] if q["name"] in FLOORS and q.get("rigorous")
+    ]
 
 
 def _warnings(sections: Mapping[str, Any]) -> Iterator[str]:

@@ -34,9 +34,9 @@ def html_page(record: Record, chapters: tuple[Chapter, ...]) -> str:
 
 
 def render(
-    title: str, sentence: str, record: Record, chapters: tuple[Chapter, ...], *, status: str = ""
+    title: str, sentence: str, record: Record, chapters: tuple[Chapter, ...], *, other: Record | None = None
 ) -> str:
-    """Render chapters under a title; `status` overrides the verdict that colours the head."""
+    """Render chapters under a title; with `other`, as the comparison of two records."""
     charts = thin(charts_of(chapters), POINT_BUDGET)
     figures = {c.key: i for i, c in enumerate(charts)}
     replays = [b for chapter in chapters for b in chapter.blocks if isinstance(b, Replay)]
@@ -50,9 +50,9 @@ def render(
         .render(
             title=title,
             sentence=sentence,
-            status=status or overall(record),
+            status=overall(record) if other is None else "",
             origin=record.document["provenance"],
-            digest=record.sha256,
+            digest=record.sha256 + (f" and {other.sha256}" if other is not None else ""),
             chapters=chapters,
             figures=figures,
             policy=_policy(scripts),

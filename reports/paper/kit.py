@@ -88,7 +88,7 @@ def verdict_table(chapters: tuple[Chapter, ...]) -> str:
             groups = block.groups if isinstance(block, Verdicts) else groups
     rows = []
     for group in groups:
-        for claim in group.claims:
+        for _, claim in (*group.entries(counted=True), *group.entries(counted=False)):
             margins = "; ".join(cell(q) for q in claim["margins"]) or "--"
             verdict = cell({"verdict": claim["verdict"]})
             rows.append([text(short(group.label, 300)), text(short(claim["title"], 300)), verdict, margins])

@@ -175,8 +175,13 @@ def _(block: Cards) -> dict[str, Any]:
 @spoken.register
 def _(block: Verdicts) -> dict[str, Any]:
     return {
+        "summary": words(block.summary),
         "kind": "verdicts",
-        "groups": [{"label": brief(g.label), "claims": [_claim(c) for c in g.claims]} for g in block.groups],
+        "groups": [
+            {"label": brief(g.label), "claims": [_claim(c) for _, c in held]}
+            for g in block.groups
+            if (held := g.entries(counted=block.counted))
+        ],
     }
 
 
@@ -188,7 +193,6 @@ def _claim(claim: Mapping[str, Any]) -> dict[str, Any]:
         "title": brief(claim["title"]),
         "statement": brief(claim["statement"]),
         "verdict": claim["verdict"],
-        "counted": claim.get("counted", True),
         "margins": [[brief(q.get("label") or q["name"]), cell(q)] for q in claim["margins"]],
         "evidence": [[e["kind"], brief(e["summary"])] for e in claim["evidence"]],
         "why": brief(why),

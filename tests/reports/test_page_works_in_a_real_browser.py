@@ -82,7 +82,7 @@ def x_range(visit: Visit, key: str) -> list[float]:
 
 
 def test_the_answer_is_on_the_first_screen(visit: Visit) -> None:
-    for words in ("10 claims asked", "R stays positive", "Certified floor of R"):
+    for words in ("10 claims asked", "R stays positive", "certified floor of R"):
         box = visit.page.get_by_text(words).first.bounding_box()
         assert box["y"] + box["height"] < 900
 

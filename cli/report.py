@@ -1,0 +1,82 @@
+"""`intermit report`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from time import perf_counter
+from typing import Annotated
+
+import typer
+
+from .options import Debug, InputError
+
+Sources = Annotated[
+    list[Path],
+    typer.Argument(
+        metavar="SCENARIO.toml | results.json [results.json]",
+        help="A scenario to study; or a record to make the pages of again; or two records to compare.",
+    ),
+]
+
+
+def run(
+    sources: Sources,
+    out: Annotated[Path, typer.Option("-o", "--out", metavar="DIR", help="Folder of the report.")],
+    date: Annotated[str, typer.Option(help="Date on the title page (default: SOURCE_DATE_EPOCH).")] = "",
+    author: Annotated[str, typer.Option(help="Name on the title page.")] = "",
+    optimum: Annotated[bool, typer.Option("--optimum/--no-optimum", help="Find the optimum.")] = True,
+    compare: Annotated[
+        bool, typer.Option("--compare/--no-compare", help="Compare each law with its optimum.")
+    ] = True,
+    margins: Annotated[
+        bool, typer.Option("--margins/--no-margins", help="Look for how far the schedule may change.")
+    ] = True,
+    force: Annotated[bool, typer.Option("--force", help="Write among files of another's making.")] = False,
+    debug: Debug = False,
+) -> int:
+    """Write a report: one page to look at, a PDF for the board, tables and figures for the paper.
+
+    From a record nothing is computed again. An interrupted run leaves the old report as it was.
+    """
+    del debug
+    from .console import note
+
+    began = perf_counter()
+    records = [path for path in sources if path.suffix == ".json" or path.is_dir()]
+    if records and len(records) < len(sources):
+        raise InputError("give one scenario, one record, or two records; not a scenario beside a record")
+    if len(sources) > 2 or (len(sources) == 2 and not records):
+        raise InputError("give one scenario, one record, or two records to compare")
+    if len(records) == 2:
+        from ..reports.build import write_comparison
+
+        code, folder = write_comparison(records[0], records[1], out, force=force)
+    elif records:
+        from ..reports.build import rebuild_report
+
+        code, folder = rebuild_report(records[0], out, force=force)
+    else:
+        code, folder = _study(sources[0], out, (optimum, compare, margins), (date, author), force)
+    note(f"{folder / 'report.html'}: {perf_counter() - began:.1f} s")
+    return code
+
+
+def _study(
+    source: Path, out: Path, wanted: tuple[bool, bool, bool], given: tuple[str, str], force: bool
+) -> tuple[int, Path]:
+    from ..reports.build import write_report
+    from ..reports.folder import refuse
+    from ..scenario import load_scenario
+    from ..study.report import ReportOptions, run_report
+    from .console import note, output, progress
+
+    scenario = load_scenario(source)
+    refuse(out, force=force)
+    for warning in scenario.warnings:
+        note(f"warning: {warning}")
+    options = ReportOptions(optimum=wanted[0], comparison=wanted[1], margins=wanted[2])
+    with progress(scenario.name) as step:
+        record = run_report(scenario, options, date=given[0], author=given[1], progress=step)
+    outcome = record.document["outcome"]
+    output().print(outcome["sentence"])
+    return int(outcome["exit_code"]), write_report(record, out, force=force)
