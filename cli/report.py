@@ -67,7 +67,6 @@ def _study(
     from ..reports.build import write_report
     from ..reports.folder import refuse
     from ..scenario import load_scenario
-    from ..study.case import CaseOptions
     from ..study.check import CheckOptions
     from ..study.report import ReportOptions, run_report
     from .console import note, output, progress
@@ -76,7 +75,7 @@ def _study(
     refuse(out, force=force)
     for warning in scenario.warnings:
         note(f"warning: {warning}")
-    check = CheckOptions(case=CaseOptions(margins=wanted[2]), workers=2)
+    check = CheckOptions(margins=wanted[2], workers=2)
     options = ReportOptions(optimum=wanted[0], comparison=wanted[1], check=check)
     with progress(scenario.name) as step:
         record = run_report(scenario, options, date=given[0], author=given[1], progress=step)

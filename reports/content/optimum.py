@@ -66,7 +66,7 @@ def _one(record: Record, index: int, entry: Mapping[str, Any]) -> list[Block]:
         rows.append({"what": "Local optima", "value": ", ".join(number(v) for v in local["values"]) + unit})
         if "spread" in local:
             rows.append({"what": "Their spread", "value": local["spread"]})
-    rows += [{"what": e["label"].capitalize(), "value": str(e["count"])} for e in entry.get("effort", ())]
+    rows += [{"what": f"Effort: {e['label']}", "value": str(e["count"])} for e in entry.get("effort", ())]
     if rows:
         columns = (("what", "Checked after the solve", ""), ("value", "Value", ""))
         blocks.append(Table(f"optimum-{index + 1}", f"{entry['label']}: checks", columns, tuple(rows)))
@@ -83,7 +83,6 @@ def _charts(record: Record, index: int, entry: Mapping[str, Any]) -> list[Chart]
         ("torque", "Torque", "N m", ("x", "y", "z")),
         ("rate", "Rate", "rad/s", ("ω₁", "ω₂", "ω₃")),
         ("switching", "Switching function", "", ("x", "y", "z")),
-        ("profile", "Window profile w", "", ()),
         ("momentum", "Angular momentum", "N m s", ("x", "y", "z")),
     )
     for role, words, unit, suffixes in kinds:
