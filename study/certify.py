@@ -4,18 +4,23 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, final
 
 from ..models.closed_loop import close_loop
-from ..scenario import LawChoice, Scenario
+from ..scenario import Scenario
+from ..scenario.laws import USER
 from ..verify.certificates import Certificate, as_text, certificate_text
 from ..verify.certificates.program import NotAlgebraicError
+from ..verify.floor.certificate import question_data
 from ..verify.lyapunov import certificates_of
 from ..verify.lyapunov.forms import inertia_data, law_form
 from ..verify.verdict import Claim
 from .case import decided_claims
 from .check import scenario_claims
+from .floor import floor_question
+from .run import Seen
 
 Progress = Callable[[str, float], None]
 
@@ -55,11 +60,9 @@ def differences(text: str, scenario: Scenario) -> tuple[str, ...]:
     Every part of the file must agree with one law of the scenario in everything it says. A law is
     compared as polynomials, so that the order of its instructions does not matter.
     """
-    parts = json.loads(text)["parts"]
-    further = any(part["data"].keys() - set(OWN_KEYS) for part in parts)
-    known = list(_scenario_data(scenario, further=further))
+    known = list(_scenario_data(scenario))
     found: list[str] = []
-    for number, part in enumerate(parts, start=1):
+    for number, part in enumerate(json.loads(text)["parts"], start=1):
         gaps = [tuple(_unequal(part["data"], data)) for data in known]
         if not any(not gap for gap in gaps):
             least = min(gaps, key=len, default=("the scenario has no law",))
@@ -67,40 +70,29 @@ def differences(text: str, scenario: Scenario) -> tuple[str, ...]:
     return tuple(found)
 
 
-OWN_KEYS = ("inertia", "inertia_tolerance", "law", "parameters")
-"""Data that follow from the scenario at once; others are taken from its own certificates."""
-
-
-def _scenario_data(scenario: Scenario, *, further: bool) -> Iterator[Mapping[str, Any]]:
+def _scenario_data(scenario: Scenario) -> Iterator[Mapping[str, Any]]:
     """Everything certificates may say of each law of a scenario, as they say it."""
-    shared = inertia_data(scenario.body.exact_inertia, scenario.inertia_tolerance)
     for choice in scenario.laws:
         law = choice.build()
-        data: dict[str, Any] = {**shared, "parameters": law.parameters}
-        try:
+        data = question_data(floor_question(scenario, law, Seen(), search=False))
+        data |= inertia_data(scenario.body.exact_inertia, scenario.inertia_tolerance)
+        data["parameters"] = law.parameters
+        with suppress(NotAlgebraicError):  # such a law has no certificate that writes it out
             data["law"] = law_form(close_loop(law))
-        except NotAlgebraicError:
-            data["law"] = {"name": law.name}
-        yield data | (_other_data(scenario, choice) if further else {})
-
-
-def _other_data(scenario: Scenario, choice: LawChoice) -> dict[str, Any]:
-    """Data of further kinds of certificates, taken from those that the scenario itself has."""
-    merged: dict[str, Any] = {}
-    claims = (*scenario_claims(scenario), *decided_claims(scenario, choice.build()))
-    for certificate in certificates_of(claims):
-        merged |= {key: value for key, value in certificate.data.items() if key not in OWN_KEYS}
-    return merged
+        if choice.type == USER:
+            data["user_law"] = True
+        yield data
 
 
 def _unequal(stated: Mapping[str, Any], expected: Mapping[str, Any]) -> Iterator[str]:
     """Names of the entries that the scenario does not confirm."""
-    text = as_text(expected)
+    own = expected.get("user_law", False)
+    text = as_text({key: value for key, value in expected.items() if key != "user_law"})
     if ("inertia_tolerance" in text) and "inertia" in stated and "inertia_tolerance" not in stated:
         yield "inertia_tolerance (the scenario has one, the certificate none)"
     for key, value in stated.items():
         if key == "law":
-            if not _same_law(value, text.get("law", {})):
+            if not _same_law(value, text["law"], by_name=not own):
                 yield "law"
         elif key == "parameters":
             for name, number in value.items():
@@ -126,10 +118,15 @@ def _same(left: Any, right: Any) -> bool:
         return False
 
 
-def _same_law(left: Mapping[str, Any], right: Mapping[str, Any]) -> bool:
-    """Whether two laws are equal: the same words, or the same torque and rates as polynomials."""
+def _same_law(left: Mapping[str, Any], right: Mapping[str, Any], *, by_name: bool) -> bool:
+    """Whether two laws are equal: the same words, or the same torque and rates as polynomials.
+
+    A certificate may give a built-in law by its name alone; a user's law has to be written out.
+    """
     from ..verify.checker import Invalid, Node, law_polynomials
 
+    if set(left) == {"name"}:
+        return by_name and left["name"] == right["name"]
     if left == right:
         return True
     try:

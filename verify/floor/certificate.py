@@ -36,19 +36,7 @@ def floor_certificate(
     convergence : its settling time for the question's tolerances is claimed too
     torque : its bound of |g u| is claimed too
     """
-    q = question
-    data: dict[str, Any] = {
-        "inertia": q.body.exact_inertia,
-        "law": {"name": q.law.name},
-        "parameters": {n: v for n, v in q.law.parameters.items() if n in LAW_PARAMETERS},
-        "schedule": schedule_data(q.schedule),
-        "initial_set": {"max_angle_deg": q.max_angle_deg},
-    }
-    if q.inertia_tolerance is not None:
-        data["inertia_tolerance"] = q.inertia_tolerance
-    for name, value in (("max_rate", q.max_rate), ("max_weighted_rate", q.max_weighted_rate)):
-        if value is not None:
-            data["initial_set"][name] = value
+    q, data = question, question_data(question)
     claim: dict[str, Any] = {"floor": Fraction(floor.value)}
     tails = [w.tail for w in floor.witnesses]
     if floor.horizon is not None:
@@ -63,6 +51,24 @@ def floor_certificate(
     if torque is not None:
         claim["torque"] = Fraction(torque.applied)
     return Certificate(KIND, data, claim, _witness(floor))
+
+
+def question_data(question: FloorQuestion) -> dict[str, Any]:
+    """What a floor's claims speak about: body, law by name, schedule and initial set."""
+    q = question
+    data: dict[str, Any] = {
+        "inertia": q.body.exact_inertia,
+        "law": {"name": q.law.name},
+        "parameters": {n: v for n, v in q.law.parameters.items() if n in LAW_PARAMETERS},
+        "schedule": schedule_data(q.schedule),
+        "initial_set": {"max_angle_deg": q.max_angle_deg},
+    }
+    if q.inertia_tolerance is not None:
+        data["inertia_tolerance"] = q.inertia_tolerance
+    for name, value in (("max_rate", q.max_rate), ("max_weighted_rate", q.max_weighted_rate)):
+        if value is not None:
+            data["initial_set"][name] = value
+    return data
 
 
 def schedule_data(schedule: Schedule) -> dict[str, Any]:
