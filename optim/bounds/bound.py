@@ -10,14 +10,19 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
 
-from ..norms import Euclidean
+from ..norms import Euclidean, LargestComponent
 from ..problem import TransferProblem
 from .cache import remembered
-from .fit import ConeConstraint
-from .momentum_sets import UnitBall
+from .components import Sides, Widths, component_bounds, peak_from_components
+from .gauge import GaugeSet, invariant_set, longest_vertex
+from .momentum_sets import MomentumSet, UnitBall
 from .path import PathBound, PathOptions, path_bound
 from .separation import Target
 from .travel import WindowTravel, least_peak, momentum_peak, rounded_down
+
+
+TRIALS = (1.0, 1.03, 1.07, 1.12, 1.18, 1.25, 1.35, 1.5, 1.75)
+"""Trial peaks of the bound by components over the best other bound: any are valid, the best is kept."""
 
 
 @final
@@ -73,34 +78,85 @@ class LowerBound:
 
 
 def certified_lower_bound(problem: TransferProblem, *, options: PathOptions | None = None) -> LowerBound:
-    """Bound the least peak torque of a transfer from below, proved."""
+    """Bound the least peak torque of a transfer from below, proved.
+
+    Notes
+    -----
+    Euclidean norm: momentum, and shortest path in the metric |J w|. Largest component and
+    thrusters: the Euclidean bounds divided by the longest torque of unit peak, the invariant set
+    (momentum and path) and, for the largest component from rest to exact rest, components.
+    """
+    options = options or PathOptions()
+    bounds = _euclidean(problem, options)
     if not isinstance(problem.norm, Euclidean):
-        raise NotImplementedError(problem.norm.name)
-    bounds = euclidean_bounds(problem, options or PathOptions())
+        longest = longest_vertex(problem.norm)
+        bounds = [NamedBound(f"Euclidean {b.name}", b.exact / longest) for b in bounds]
+        bounds += _by_invariant_set(problem, options)
     ordered = tuple(sorted(bounds, key=lambda bound: -bound.exact))
     return LowerBound(ordered[0], ordered, problem.norm.unit)
 
 
-def euclidean_bounds(problem: TransferProblem, options: PathOptions) -> list[NamedBound]:
-    """Bounds for |torque| <= p w: momentum alone, and shortest path in the metric |J w|."""
+def _euclidean(problem: TransferProblem, options: PathOptions) -> list[NamedBound]:
+    """Bounds for |torque| <= p w."""
+    return _momentum_and_path(problem, UnitBall(problem.body), options, ("momentum", "shortest path"))
+
+
+def _by_invariant_set(problem: TransferProblem, options: PathOptions) -> list[NamedBound]:
+    """Bounds through the set that contains the torques and is invariant under free motion."""
+    momenta = invariant_set(problem.body, problem.norm)
+    names = ("momentum in the invariant set", "invariant set")
+    result = _momentum_and_path(problem, momenta, options, names)
+    at_rest = problem.starts_at_rest and not problem.terminal.rate
+    if isinstance(problem.norm, LargestComponent) and at_rest:
+        result += _by_components(problem, momenta, options, max(bound.exact for bound in result))
+    return result
+
+
+def _by_components(
+    problem: TransferProblem, momenta: GaugeSet, options: PathOptions, known: Fraction
+) -> list[NamedBound]:
+    """Bound from components, at a trial peak a little above the bound known."""
     windows = WindowTravel(problem.window)
-    ball = UnitBall(problem.body)
-    momentum = tuple(
-        sum((row[k] * problem.rate[k] for k in range(3)), Fraction(0)) for row in problem.body.exact_inertia
-    )
-    H0 = (momentum[0], momentum[1], momentum[2])
-    end = ball.size_of_rate(problem.terminal.rate)
-    result = [NamedBound("momentum", momentum_peak(windows, ball.size_below(H0), end))]
+    if windows.total == 0 or known <= 0:
+        return []
+    sides = Sides(problem.window, windows.instant(windows.total / 2))
+    first = component_bounds(momenta, sides, Fraction(float(known) * options.trial))
+    share = Fraction(options.share)
+    # Steps of 1/50 are fine enough, and let sweeps over windows share their potentials.
+    near = [max(Fraction(round((1 + share * (B - 1)) * 50), 50), Fraction(1)) for B in first.B]
+    if all(b >= r for b, r in zip(near, first.widths, strict=True)):
+        return []
+    beta: Widths = (near[0], near[1], near[2])
+    path = _path(problem, momenta.with_box(beta), options)
+    peaks = [
+        peak_from_components(sides, component_bounds(momenta, sides, trial), beta, path.travel)
+        for trial in (Fraction(float(known) * factor) for factor in TRIALS)
+    ]
+    return [NamedBound("components", max(peaks))]
+
+
+def _momentum_and_path(
+    problem: TransferProblem, momenta: MomentumSet, options: PathOptions, names: tuple[str, str]
+) -> list[NamedBound]:
+    """Both bounds that a set of momenta gives."""
+    windows = WindowTravel(problem.window)
+    rows = problem.body.exact_inertia
+    H = [sum((row[k] * problem.rate[k] for k in range(3)), Fraction(0)) for row in rows]
+    H0 = (H[0], H[1], H[2])
+    end = momenta.size_of_rate(problem.terminal.rate)
+    absorbed = momentum_peak(windows, momenta.size_below(H0), end)
+    path = _path(problem, momenta, options)
+    peak = least_peak(windows, path.travel, momenta.size_above(H0), end)
+    return [NamedBound(names[0], absorbed), NamedBound(names[1], peak.value)]
+
+
+def _path(problem: TransferProblem, momenta: MomentumSet, options: PathOptions) -> PathBound:
+    """Path bound of the problem's attitude, remembered."""
     target = Target(problem.terminal.attitude)
-    key = (ball.key(), problem.attitude, target, problem.signs, options)
+    key = (momenta.key(), problem.attitude, target, problem.signs, options)
 
     def compute() -> PathBound:
-        body, attitude = problem.body, problem.attitude
-        return path_bound(
-            body, attitude, target, ball, ConeConstraint(), signs=problem.signs, options=options
-        )
+        signs = problem.signs
+        return path_bound(problem.body, problem.attitude, target, momenta, signs=signs, options=options)
 
-    path = remembered(key, compute)
-    peak = least_peak(windows, path.travel, ball.size_above(H0), end)
-    result.append(NamedBound("shortest path", peak.value))
-    return result
+    return remembered(key, compute)

@@ -7,28 +7,18 @@ with float coefficients, whose largest rate is proved afterwards and divided by.
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .barrier import BallBarrier, maximise
 from .chart import Chart
 from .momentum_sets import MomentumSet
 from .polynomials import CONSTANT, exponents
 from .rate import potential_rates, rate_features
 
 Array = NDArray[np.float64]
-
-
-class RateConstraint(ABC):
-    """How h(v) <= 1 at points is put to the solver, for rates v linear in the coefficients."""
-
-    @abstractmethod
-    def maximise(self, objective: Array, features: Array) -> Array:
-        """Coefficients (m,) that maximise objective . c with h(features[i] c) <= 1, features (n, m, 3)."""
 
 
 @final
@@ -70,11 +60,10 @@ class PotentialProgram:
         chart: Chart,
         ends: tuple[Array, Array],
         momenta: MomentumSet,
-        constraint: RateConstraint,
         inverse_inertia: Array,
     ) -> None:
         self.fit, self.chart = fit, chart
-        self._momenta, self._constraint, self._inverse = momenta, constraint, inverse_inertia
+        self._momenta, self._constraint, self._inverse = momenta, momenta.constraint(), inverse_inertia
         self._table = exponents(fit.degree)[1:]
         self._random = np.random.default_rng(fit.seed)
         start, target = ends
@@ -116,16 +105,6 @@ class PotentialProgram:
         chosen = spread_violations(points, heights, spacing=0.03)
         if chosen:
             self._rows = np.concatenate([self._rows, self._features(points[chosen])[1]])
-
-
-@final
-@dataclass(frozen=True)
-class ConeConstraint(RateConstraint):
-    """|v| <= 1 at every point."""
-
-    def maximise(self, objective: Array, features: Array) -> Array:
-        """Interior-point steps on second-order cones."""
-        return maximise(objective, BallBarrier.from_features(features))
 
 
 def sample_region(chart: Chart, count: int, random: np.random.Generator) -> Array:

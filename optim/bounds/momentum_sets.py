@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from ...models.rigid_body import RigidBody, leading_minors
 from .chart import Vector, square_root
+from .constraints import ConeConstraint, RateConstraint
 
 Array = NDArray[np.float64]
 
@@ -80,6 +81,19 @@ class TaylorBoxes:
         total = (v * v).sum(axis=1) + np.abs(first).sum(axis=1) + known + beyond + noise
         return np.asarray(np.sqrt(total))
 
+    def by_components(self, widths: Array) -> Array:
+        """Bound of sum widths_i |v_i|, itself above h: sharp for boxes.
+
+        |v_i| = s_i v_i + 2 max(0, -s_i v_i) with the sign s_i at the middle, so that the terms of
+        components that keep their sign are added before absolute values are taken.
+        """
+        signs = np.where(self.middle >= 0, 1.0, -1.0) * widths
+        combined = np.einsum("ni,nik->nk", signs, self.tables)
+        reach = np.abs(self.tables[:, :, 1:]).sum(axis=2) - np.abs(self.middle)
+        flips = 2 * (np.maximum(reach, 0.0) * widths).sum(axis=1)
+        noise = 1e-13 * (np.abs(self.tables).sum(axis=2) * widths).sum(axis=1)
+        return np.asarray(combined[:, 0] + np.abs(combined[:, 1:]).sum(axis=1) + flips + noise)
+
 
 class MomentumSet(ABC):
     """A compact convex symmetric set of momenta with 0 inside; momentum in N m s per unit of travel."""
@@ -115,6 +129,10 @@ class MomentumSet(ABC):
     @abstractmethod
     def size_of_rate(self, rate: Fraction) -> Fraction:
         """Upper bound of the gauge of J w over |w| <= rate."""
+
+    @abstractmethod
+    def constraint(self) -> RateConstraint:
+        """How a program is told h(v) <= 1; a fresh one for each program."""
 
     @abstractmethod
     def key(self) -> tuple[object, ...]:
@@ -160,6 +178,10 @@ class UnitBall(MomentumSet):
     def size_of_rate(self, rate: Fraction) -> Fraction:
         """Greatest principal inertia times the rate."""
         return greatest_inertia_above(self.body) * rate
+
+    def constraint(self) -> RateConstraint:
+        """Cones."""
+        return ConeConstraint()
 
     def key(self) -> tuple[object, ...]:
         """Only the body matters."""

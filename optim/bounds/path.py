@@ -14,7 +14,7 @@ import numpy as np
 
 from ...models.rigid_body import RigidBody
 from .chart import Quaternion, arc_to_identity
-from .fit import Fit, RateConstraint
+from .fit import Fit
 from .momentum_sets import MomentumSet
 from .prove import BranchAndBound
 from .separation import WIDEST_ARC, Separation, Target, cheap_separation, estimated_travel, separation
@@ -31,14 +31,21 @@ class PathOptions:
         Degree of the potentials; None chooses 5 to 7 by the size of the region.
     tolerance : float
         What branch and bound may lose.
+    trial, share : float
+        Bound by components: the trial peak over the bound known, and where between 1 and B the
+        box is put. Any values are valid.
     """
 
     degree: int | None = None
     tolerance: float = 8e-4
+    trial: float = 1.12
+    share: float = 0.6
 
     def __post_init__(self) -> None:
         if self.degree is not None and not 1 <= self.degree <= 9:
             raise ValueError(f"the degree of a potential must be 1 to 9, received {self.degree}")
+        if self.trial <= 0 or not 0 <= self.share <= 1:
+            raise ValueError(f"expected trial > 0, 0 <= share <= 1: received {self.trial}, {self.share}")
         if not 0 < self.tolerance < 1:
             raise ValueError(f"tolerance must be in (0, 1), received {self.tolerance}")
 
@@ -71,7 +78,6 @@ def path_bound(
     start: Quaternion,
     target: Target,
     momenta: MomentumSet,
-    constraint: RateConstraint,
     *,
     signs: tuple[int, ...] = (1, -1),
     options: PathOptions | None = None,
@@ -89,7 +95,7 @@ def path_bound(
             found[sign] = None
             continue
         limit = None if least is None else float(least) * 1.002
-        result = _nearest(body, starts[sign], target, momenta, constraint, options, limit)
+        result = _nearest(body, starts[sign], target, momenta, options, limit)
         travel = cheap
         if result is not None and result.travel > cheap:
             travel, found[sign] = result.travel, result
@@ -109,7 +115,6 @@ def _nearest(
     start: Quaternion,
     target: Target,
     momenta: MomentumSet,
-    constraint: RateConstraint,
     options: PathOptions,
     limit: float | None,
 ) -> Separation | None:
@@ -132,7 +137,7 @@ def _nearest(
     if limit is None:
         for degree in (4, None, None):
             fit = Fit(degree=degree or options.degree_for(guess * speed / 2))
-            value = estimated_travel(body, start, momenta, constraint, guess=guess, fit=fit)
+            value = estimated_travel(body, start, momenta, guess=guess, fit=fit)
             if degree is None and 0.96 * guess < value < 0.998 * guess:
                 break
             guess = min(max(1.015 * value, least), highest)
@@ -143,7 +148,7 @@ def _nearest(
         fit = Fit(degree=degree if limit is None or attempt else min(degree, 5))
         enough = np.inf if limit is None else limit
         found = separation(
-            body, start, target, momenta, constraint, guess=guess, fit=fit, prover=prover, enough=enough
+            body, start, target, momenta, guess=guess, fit=fit, prover=prover, enough=enough
         )
         if best is None or found.travel > best.travel:
             best = found

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from ...models.rigid_body import RigidBody
 from . import polynomials as poly
 from .chart import Chart, Quaternion, Vector, arctangent_below, chart_between, square_root
-from .fit import Fit, PotentialProgram, RateConstraint
+from .fit import Fit, PotentialProgram
 from .momentum_sets import MomentumSet, length_above
 from .polynomials import Polynomial, exponents
 from .prove import BranchAndBound, Supremum
@@ -94,7 +94,6 @@ def separation(
     start: Quaternion,
     target: Target,
     momenta: MomentumSet,
-    constraint: RateConstraint,
     *,
     guess: float,
     fit: Fit,
@@ -106,16 +105,17 @@ def separation(
     Fitting stops early once the travel is going to be `enough`.
     """
     chart, ends = _setting(start, target, momenta, guess)
-    program = PotentialProgram(fit, chart, ends, momenta, constraint, body.inverse_inertia)
+    program = PotentialProgram(fit, chart, ends, momenta, body.inverse_inertia)
     coefficients = program.solve_sampled()
-    best, best_value = coefficients, -np.inf
+    best, best_value, idle = coefficients, -np.inf, 0
     scout = BranchAndBound(tolerance=3e-3, most_boxes=100_000, levels=6, scouting=True)
     for _ in range(fit.proofs):
         found = _largest_rate(body, chart, _exact(coefficients, fit.degree), momenta, scout)
         value = program.value(coefficients) / max(found.seen, 1.0)
+        idle = 0 if value > best_value * (1 + 3e-4) else idle + 1
         if value > best_value:
             best, best_value = coefficients, value
-        if found.seen <= 1 + fit.excess or program.value(coefficients) / found.value >= enough:
+        if found.seen <= 1 + fit.excess or idle > 2 or program.value(coefficients) / found.value >= enough:
             break
         program.add(found.worst, found.heights)
         coefficients = program.solve()
@@ -139,14 +139,13 @@ def estimated_travel(
     body: RigidBody,
     start: Quaternion,
     momenta: MomentumSet,
-    constraint: RateConstraint,
     *,
     guess: float,
     fit: Fit,
 ) -> float:
     """Return what a potential is likely to give on the region of `guess`, without proof."""
     chart, ends = _setting(start, Target(), momenta, guess)
-    program = PotentialProgram(fit, chart, ends, momenta, constraint, body.inverse_inertia)
+    program = PotentialProgram(fit, chart, ends, momenta, body.inverse_inertia)
     return program.value(program.solve_sampled())
 
 

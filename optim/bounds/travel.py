@@ -69,6 +69,29 @@ class WindowTravel:
         first, second = self._prefix[0][i], self._prefix[1][i]
         return first + poly.evaluate(one, x), second + first * (t - knots[i]) + poly.evaluate(two, x)
 
+    def opened_area(self, t: Fraction) -> Fraction:
+        """Integral of up over [0, t], s^2."""
+        return self._at(t)[1]
+
+    @cached_property
+    def _squares(self) -> tuple[Fraction, ...]:
+        """Integral of up^2 at the knots."""
+        values = [Fraction(0)]
+        for i, piece in enumerate(self.window.pieces):
+            values.append(values[-1] + self._square_part(i, Fraction(1)) * piece.length)
+        return tuple(values)
+
+    def _square_part(self, i: int, x: Fraction) -> Fraction:
+        rise = poly.add(poly.polynomial(self._prefix[0][i]), self._shapes[i][0])
+        return poly.evaluate(poly.antiderivative(poly.multiply(rise, rise)), x)
+
+    def opened_square(self, t: Fraction) -> Fraction:
+        """Integral of up^2 over [0, t], s^3."""
+        knots = self.window.knots
+        i = min(max(bisect_right(knots, t) - 1, 0), len(knots) - 2)
+        length = knots[i + 1] - knots[i]
+        return self._squares[i] + self._square_part(i, (t - knots[i]) / length) * length
+
     def area(self, s: Fraction) -> Fraction:
         """A(s), s^2."""
         inner = self._at(s)[1]

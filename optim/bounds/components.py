@@ -1,0 +1,245 @@
+r"""Largest component: the momentum's components are bounded one by one as well.
+
+From rest to rest under |torque_i| <= p w, write n(t) = up(t) until an instant s and the rest of
+the open time after it. The invariant set K gives H in p n K. If moreover |H_j| <= B_j p n is known,
+then wherever |H_i| >= p n the gyroscopic term (H x J^-1 H)_i is at most kappa_i (p n)^2, with
+
+    kappa_i = max |(X x J^-1 X)_i|  over X in K, |X_j| <= B_j, |X_i| >= 1,
+
+so |H_i| <= p up + kappa_i p^2 int_0^t up^2 until s (a first crossing is impossible), and the mirror
+image after it: a smaller B_i, and again. All of it grows with p: computed at a trial peak it holds
+for every smaller one, so that the bound is the lesser of the trial and of what follows from it.
+
+For fixed beta >= 1, H is in p n max(1, max_i min(1 + kappa_i p Y/up, r_i)/beta_i) times the part of
+K with |H_i| <= beta_i (Y = int up^2, r_i the half width of K), and a potential for that part gives a
+bound. For J = c I, kappa = 0 and the part is the cube itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import final
+
+import numpy as np
+
+from ...models.rigid_body import RigidBody, leading_minors
+from ...models.schedule import PiecewisePolynomial
+from ...models.schedule import polynomial as univariate
+from .gauge import GaugeSet
+from .rate import ExactMatrix, exact_inverse
+from .travel import WindowTravel
+
+CELLS = 96
+_DENOMINATOR = 2**40
+
+
+@final
+@dataclass(frozen=True)
+class Cell:
+    """Part of the opening side of a transfer.
+
+    Attributes
+    ----------
+    area : Fraction
+        Integral of up over the cell, s^2.
+    ratio : Fraction
+        Upper bound of Y/up on it, s^2.
+    """
+
+    area: Fraction
+    ratio: Fraction
+
+
+@final
+@dataclass(frozen=True)
+class Sides:
+    """Both sides of a transfer in cells: from the start to an instant, and mirrored from the end."""
+
+    window: PiecewisePolynomial
+    instant: Fraction
+
+    @cached_property
+    def cells(self) -> tuple[Cell, ...]:
+        """Cells of both sides."""
+        mirrored = mirror(self.window)
+        horizon = self.window.knots[-1]
+        return (*_cells(self.window, self.instant), *_cells(mirrored, horizon - self.instant))
+
+    @cached_property
+    def largest_ratio(self) -> Fraction:
+        """Upper bound of Y/up over both sides."""
+        return max((cell.ratio for cell in self.cells), default=Fraction(0))
+
+    def travel_above(self, p: Fraction, kappa: tuple[Fraction, ...], widths: Widths, beta: Widths) -> Fraction:
+        """Upper bound of the travel of a transfer of peak p, in units of the part of K."""
+        travel = Fraction(0)
+        for cell in self.cells:
+            factor = Fraction(1)
+            for k, r, b in zip(kappa, widths, beta, strict=True):
+                factor = max(factor, min(1 + k * p * cell.ratio, r) / b)
+            travel += p * cell.area * factor
+        return travel
+
+
+Widths = tuple[Fraction, Fraction, Fraction]
+
+
+def mirror(window: PiecewisePolynomial) -> PiecewisePolynomial:
+    """Return the profile with time running backwards."""
+    horizon = window.knots[-1]
+    knots = tuple(horizon - k for k in reversed(window.knots))
+    shapes = tuple(
+        univariate.compose_affine(shape, Fraction(1), Fraction(-1)) for shape in reversed(window.shapes)
+    )
+    return PiecewisePolynomial(knots, shapes)
+
+
+def _cells(window: PiecewisePolynomial, until: Fraction) -> list[Cell]:
+    """Cells of [0, until]; Y/up <= min(Y(b)/up(a), int_0^b up) on [a, b] because both rise."""
+    travel = WindowTravel(window)
+    edges = sorted(
+        {until * k / CELLS for k in range(CELLS + 1)} | {k for k in window.knots if 0 < k < until}
+    )
+    result = []
+    for a, b in zip(edges, edges[1:], strict=False):
+        up = travel.up(a)
+        ratio = travel.opened_area(b)
+        if up > 0:
+            ratio = min(ratio, travel.opened_square(b) / up)
+        area = travel.opened_area(b) - travel.opened_area(a)
+        if area > 0:
+            result.append(Cell(_coarser(area), _coarser(ratio)))
+    return result
+
+
+def _coarser(x: Fraction) -> Fraction:
+    """Round up to a short binary fraction."""
+    return Fraction((x * _DENOMINATOR).__ceil__(), _DENOMINATOR)
+
+
+@final
+@dataclass(frozen=True)
+class ComponentBounds:
+    """Valid at every peak up to the trial: gyroscopic constants, and |H_i| <= B_i p n."""
+
+    trial: Fraction
+    kappa: Widths
+    B: Widths
+    widths: Widths
+
+
+def component_bounds(momenta: GaugeSet, sides: Sides, trial: Fraction, *, rounds: int = 5) -> ComponentBounds:
+    """Iterate kappa and B from the widths of the invariant set."""
+    r = momenta.widths()
+    widths: Widths = (Fraction(float(r[0])), Fraction(float(r[1])), Fraction(float(r[2])))
+    B, kappa = widths, (Fraction(0), Fraction(0), Fraction(0))
+    for _ in range(rounds):
+        kappa = (
+            gyroscopic_bound(momenta, B, 0),
+            gyroscopic_bound(momenta, B, 1),
+            gyroscopic_bound(momenta, B, 2),
+        )
+        raised = [_coarser(1 + k * trial * sides.largest_ratio) for k in kappa]
+        following: Widths = (min(B[0], raised[0]), min(B[1], raised[1]), min(B[2], raised[2]))
+        if all(b - f < Fraction(1, 1000) for b, f in zip(B, following, strict=True)):
+            break
+        B = following
+    return ComponentBounds(trial, kappa, B, widths)
+
+
+def gyroscopic_form(body: RigidBody, axis: int) -> ExactMatrix:
+    """Symmetric G with X'G X = (X x J^-1 X)_axis."""
+    A = exact_inverse(body.exact_inertia)
+    j, k = (axis + 1) % 3, (axis + 2) % 3
+    G = [[Fraction(0)] * 3 for _ in range(3)]
+    for m in range(3):
+        for row, column, value in ((j, m, A[k][m]), (k, m, -A[j][m])):
+            G[row][column] += value / 2
+            G[column][row] += value / 2
+    return tuple((row[0], row[1], row[2]) for row in G)
+
+
+def gyroscopic_bound(momenta: GaugeSet, B: Widths, axis: int) -> Fraction:
+    """Upper bound of |X'G X| over X in the set, |X_j| <= B_j, |X_axis| >= 1: multipliers, checked exactly."""
+    G = gyroscopic_form(momenta.body, axis)
+    if not any(any(row) for row in G):
+        return Fraction(0)
+    units = [_unit(j) for j in range(3)]
+    matrices = [*momenta.matrices, *units]
+    levels = [*momenta.levels, *(b * b for b in B)]
+    best = Fraction(0)
+    for sign in (1, -1):
+        signed = tuple(tuple(sign * x for x in row) for row in G)
+        best = max(best, _dual_bound(signed, matrices, levels, units[axis]))
+    return _coarser(best)
+
+
+def _dual_bound(
+    G: tuple[tuple[Fraction, ...], ...], matrices: list[ExactMatrix], levels: list[Fraction], floor: ExactMatrix
+) -> Fraction:
+    """Sum l_k g_k^2 - rho with sum l_k M_k - rho e e' - G >= 0, proved by minors."""
+    multipliers, rho = _solve_dual(G, matrices, levels, floor)
+    slack = Fraction(max(float(m) for m in multipliers) + 1e-6) / 10**7
+    for _ in range(40):
+        lifted = [multipliers[0] + slack, *multipliers[1:]]
+        gap = [
+            [
+                sum((m * M[i][j] for m, M in zip(lifted, matrices, strict=True)), -rho * floor[i][j] - G[i][j])
+                for j in range(3)
+            ]
+            for i in range(3)
+        ]
+        if all(minor > 0 for minor in leading_minors(gap)):
+            return max(sum((m * g for m, g in zip(lifted, levels, strict=True)), -rho), Fraction(0))
+        slack *= 4
+    raise ArithmeticError("no multipliers prove a bound of the gyroscopic term")
+
+
+def _solve_dual(
+    G: tuple[tuple[Fraction, ...], ...], matrices: list[ExactMatrix], levels: list[Fraction], floor: ExactMatrix
+) -> tuple[list[Fraction], Fraction]:
+    """Multipliers by a small semidefinite program (only guesses: they are checked afterwards)."""
+    import clarabel
+    from scipy import sparse
+
+    root = float(np.sqrt(2.0))
+    places = ((0, 0, 1.0), (0, 1, root), (1, 1, 1.0), (0, 2, root), (1, 2, root), (2, 2, 1.0))
+    size = max(abs(float(x)) for row in G for x in row)
+    columns = [[-float(M[i][j]) * c / size for i, j, c in places] for M in matrices]
+    columns.append([float(floor[i][j]) * c / size for i, j, c in places])
+    count = len(columns)
+    top = -np.eye(count)
+    rows = np.vstack([top, np.array(columns).T])
+    right = np.concatenate([np.zeros(count), [-float(G[i][j]) * c / size for i, j, c in places]])
+    cost = np.array([*(float(g) for g in levels), -1.0])
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    cones = [clarabel.NonnegativeConeT(count), clarabel.PSDTriangleConeT(3)]
+    zero = sparse.csc_matrix((count, count))
+    solution = clarabel.DefaultSolver(zero, cost, sparse.csc_matrix(rows), right, cones, settings).solve()
+    x = [Fraction(max(float(value), 0.0)) for value in solution.x]
+    return x[:-1], x[-1]
+
+
+def _unit(axis: int) -> ExactMatrix:
+    rows = [[Fraction(int(i == j == axis)) for j in range(3)] for i in range(3)]
+    return tuple((row[0], row[1], row[2]) for row in rows)
+
+
+def peak_from_components(
+    sides: Sides, bounds: ComponentBounds, beta: Widths, travel: Fraction
+) -> Fraction:
+    """Largest p found with travel_above(p) <= travel: every smaller peak is impossible; at most the trial."""
+
+    def possible(p: Fraction) -> bool:
+        return sides.travel_above(p, bounds.kappa, bounds.widths, beta) >= travel
+
+    if not possible(bounds.trial):
+        return bounds.trial
+    low, high = Fraction(0), bounds.trial
+    for _ in range(34):
+        middle = (low + high) / 2
+        low, high = (low, middle) if possible(middle) else (middle, high)
+    return low
