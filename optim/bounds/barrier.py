@@ -1,9 +1,10 @@
 """A small interior-point method for programs with few unknowns and many simple constraints.
 
-Maximise b.c subject to |V_i c| <= 1 (rows of three) or a_i.c <= 1: c = 0 is strictly inside, so
-a path-following logarithmic barrier with Newton steps needs no first phase, and every step costs
+Maximise b.c subject to |V_i c| <= 1 (rows of three): c = 0 is strictly inside, so a
+path-following logarithmic barrier with Newton steps needs no first phase, and every step costs
 one product of a tall matrix with its transpose. (A sparse solver of cone programs takes ten
-times as long here: the matrix is dense and tall.) The answer is not trusted by anyone.
+times as long here: the matrix is dense and tall.) For halfspaces a_i.c <= 1 there is a primal-dual
+method of predictor and corrector steps. The answers are not trusted by anyone.
 """
 
 from __future__ import annotations
@@ -87,32 +88,43 @@ class BallBarrier(Barrier):
         return float(-np.log(slack).sum()), gradient, tall.T @ tall
 
 
-@final
-@dataclass(frozen=True)
-class HalfspaceBarrier(Barrier):
-    """a_i.c <= 1 for rows (n, m)."""
+def maximise_linear(objective: Array, rows: Array, *, gap: float = 1e-4, most: int = 40) -> Array:
+    """Maximise objective . c subject to rows c <= 1, by predictor and corrector steps; c is feasible."""
+    size = float(np.linalg.norm(objective))
+    b = objective / size
+    n, m = rows.shape
+    c, slack = np.zeros(m), np.ones(n)
+    y = np.full(n, 1.0 / n)
+    for _ in range(most):
+        short = b - rows.T @ y
+        value = float(b @ c)
+        mean = float(slack @ y) / n
+        if float(slack @ y) <= gap * max(value, 1e-9) and np.linalg.norm(short) <= 1e-6:
+            break
+        weight = y / slack
+        hessian = (rows * weight[:, None]).T @ rows
+        hessian += _ridge(hessian)
+        # Newton: rows.T dy = short, dslack = -rows dc, y dslack + slack dy = right.
+        right = -slack * y
+        dc = np.linalg.solve(hessian, short - rows.T @ (right / slack))
+        ds = -rows @ dc
+        dy = (right - y * ds) / slack
+        first, second = _longest(slack, ds), _longest(y, dy)
+        ahead = float((slack + first * ds) @ (y + second * dy)) / n
+        right = (ahead / mean) ** 3 * mean - slack * y - ds * dy
+        dc = np.linalg.solve(hessian, short - rows.T @ (right / slack))
+        ds = -rows @ dc
+        dy = (right - y * ds) / slack
+        first, second = 0.99 * _longest(slack, ds), 0.99 * _longest(y, dy)
+        c, slack, y = c + first * dc, slack + first * ds, y + second * dy
+    largest = float((rows @ c).max())
+    return c / largest if largest > 0 else c
 
-    rows: Array
 
-    @property
-    def parameter(self) -> float:
-        """One for each row."""
-        return float(len(self.rows))
-
-    def scale(self, c: Array) -> float:
-        """Largest a_i.c."""
-        return max(float((self.rows @ c).max()), 0.0)
-
-    def value(self, c: Array) -> float:
-        """Minus the sum of log(1 - a_i.c)."""
-        slack = 1 - self.rows @ c
-        return float(-np.log(slack).sum()) if slack.min() > 0 else np.inf
-
-    def derivatives(self, c: Array) -> tuple[float, Array, Array]:
-        """Exact derivatives."""
-        slack = 1 - self.rows @ c
-        weighted = self.rows / slack[:, None]
-        return float(-np.log(slack).sum()), weighted.sum(axis=0), weighted.T @ weighted
+def _longest(x: Array, step: Array) -> float:
+    """Largest share of a step (at most 1) that keeps x >= 0."""
+    falling = step < 0
+    return float(min(1.0, (-x[falling] / step[falling]).min())) if falling.any() else 1.0
 
 
 def maximise(objective: Array, barrier: Barrier, *, gap: float = 3e-4) -> Array:

@@ -20,7 +20,6 @@ from .path import PathBound, PathOptions, path_bound
 from .separation import Target
 from .travel import WindowTravel, least_peak, momentum_peak, rounded_down
 
-
 TRIALS = (1.0, 1.03, 1.07, 1.12, 1.18, 1.25, 1.35, 1.5, 1.75)
 """Trial peaks of the bound by components over the best other bound: any are valid, the best is kept."""
 

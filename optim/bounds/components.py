@@ -72,7 +72,9 @@ class Sides:
         """Upper bound of Y/up over both sides."""
         return max((cell.ratio for cell in self.cells), default=Fraction(0))
 
-    def travel_above(self, p: Fraction, kappa: tuple[Fraction, ...], widths: Widths, beta: Widths) -> Fraction:
+    def travel_above(
+        self, p: Fraction, kappa: tuple[Fraction, ...], widths: Widths, beta: Widths
+    ) -> Fraction:
         """Upper bound of the travel of a transfer of peak p, in units of the part of K."""
         travel = Fraction(0)
         for cell in self.cells:
@@ -99,9 +101,7 @@ def mirror(window: PiecewisePolynomial) -> PiecewisePolynomial:
 def _cells(window: PiecewisePolynomial, until: Fraction) -> list[Cell]:
     """Cells of [0, until]; Y/up <= min(Y(b)/up(a), int_0^b up) on [a, b] because both rise."""
     travel = WindowTravel(window)
-    edges = sorted(
-        {until * k / CELLS for k in range(CELLS + 1)} | {k for k in window.knots if 0 < k < until}
-    )
+    edges = sorted({until * k / CELLS for k in range(CELLS + 1)} | {k for k in window.knots if 0 < k < until})
     result = []
     for a, b in zip(edges, edges[1:], strict=False):
         up = travel.up(a)
@@ -177,7 +177,10 @@ def gyroscopic_bound(momenta: GaugeSet, B: Widths, axis: int) -> Fraction:
 
 
 def _dual_bound(
-    G: tuple[tuple[Fraction, ...], ...], matrices: list[ExactMatrix], levels: list[Fraction], floor: ExactMatrix
+    G: tuple[tuple[Fraction, ...], ...],
+    matrices: list[ExactMatrix],
+    levels: list[Fraction],
+    floor: ExactMatrix,
 ) -> Fraction:
     """Sum l_k g_k^2 - rho with sum l_k M_k - rho e e' - G >= 0, proved by minors."""
     multipliers, rho = _solve_dual(G, matrices, levels, floor)
@@ -186,7 +189,9 @@ def _dual_bound(
         lifted = [multipliers[0] + slack, *multipliers[1:]]
         gap = [
             [
-                sum((m * M[i][j] for m, M in zip(lifted, matrices, strict=True)), -rho * floor[i][j] - G[i][j])
+                sum(
+                    (m * M[i][j] for m, M in zip(lifted, matrices, strict=True)), -rho * floor[i][j] - G[i][j]
+                )
                 for j in range(3)
             ]
             for i in range(3)
@@ -198,7 +203,10 @@ def _dual_bound(
 
 
 def _solve_dual(
-    G: tuple[tuple[Fraction, ...], ...], matrices: list[ExactMatrix], levels: list[Fraction], floor: ExactMatrix
+    G: tuple[tuple[Fraction, ...], ...],
+    matrices: list[ExactMatrix],
+    levels: list[Fraction],
+    floor: ExactMatrix,
 ) -> tuple[list[Fraction], Fraction]:
     """Multipliers by a small semidefinite program (only guesses: they are checked afterwards)."""
     import clarabel
@@ -228,18 +236,25 @@ def _unit(axis: int) -> ExactMatrix:
     return tuple((row[0], row[1], row[2]) for row in rows)
 
 
-def peak_from_components(
-    sides: Sides, bounds: ComponentBounds, beta: Widths, travel: Fraction
-) -> Fraction:
+def peak_from_components(sides: Sides, bounds: ComponentBounds, beta: Widths, travel: Fraction) -> Fraction:
     """Largest p found with travel_above(p) <= travel: every smaller peak is impossible; at most the trial."""
+    area = np.array([float(cell.area) for cell in sides.cells])
+    ratio = np.array([float(cell.ratio) for cell in sides.cells])
+    kappa, widths, box = (np.array([float(x) for x in v]) for v in (bounds.kappa, bounds.widths, beta))
 
-    def possible(p: Fraction) -> bool:
-        return sides.travel_above(p, bounds.kappa, bounds.widths, beta) >= travel
+    def approximate(p: float) -> float:
+        factors = np.minimum(1 + kappa * p * ratio[:, None], widths) / box
+        return float(p * (area * np.maximum(1.0, factors.max(axis=1))).sum())
 
-    if not possible(bounds.trial):
-        return bounds.trial
-    low, high = Fraction(0), bounds.trial
-    for _ in range(34):
-        middle = (low + high) / 2
-        low, high = (low, middle) if possible(middle) else (middle, high)
-    return low
+    low, high = 0.0, float(bounds.trial)
+    if approximate(high) > float(travel):
+        for _ in range(60):
+            middle = (low + high) / 2
+            low, high = (middle, high) if approximate(middle) <= float(travel) else (low, middle)
+        high = low
+    # The float figure only proposes; each candidate is decided in exact arithmetic.
+    for margin in (0.0, 1e-12, 1e-10, 1e-8, 1e-6):
+        candidate = min(Fraction(high * (1 - margin)), bounds.trial)
+        if sides.travel_above(candidate, bounds.kappa, bounds.widths, beta) <= travel:
+            return candidate
+    return Fraction(0)

@@ -8,7 +8,7 @@ from typing import final
 import numpy as np
 from numpy.typing import NDArray
 
-from .barrier import BallBarrier, HalfspaceBarrier, maximise
+from .barrier import BallBarrier, maximise, maximise_linear
 
 Array = NDArray[np.float64]
 
@@ -40,7 +40,9 @@ class CutConstraint(RateConstraint):
 
     def __init__(self, boundary: Array) -> None:
         self._boundary = boundary
-        compass = np.array([[i, j, k] for i in (-1, 0, 1) for j in (-1, 0, 1) for k in (-1, 0, 1)], dtype=float)
+        compass = np.array(
+            [[i, j, k] for i in (-1, 0, 1) for j in (-1, 0, 1) for k in (-1, 0, 1)], dtype=float
+        )
         corners = compass[(compass != 0).sum(axis=1) == 3]
         self._first = np.unique(np.argmax(corners @ boundary.T, axis=1))
         self._points = np.zeros(0, dtype=np.int64)
@@ -56,7 +58,7 @@ class CutConstraint(RateConstraint):
         coefficients = np.zeros(len(objective))
         for _ in range(6):
             rows = np.einsum("nmi,ni->nm", features[self._points], self._boundary[self._cuts])
-            coefficients = maximise(objective, HalfspaceBarrier(rows))
+            coefficients = maximise_linear(objective, rows)
             loose = rows @ coefficients < 0.7
             rates = np.einsum("nmi,m->ni", features, coefficients) @ self._boundary.T
             highest = rates.argmax(axis=1)

@@ -55,7 +55,11 @@ class GaugeSet(MomentumSet):
     """
 
     def __init__(
-        self, body: RigidBody, matrices: tuple[ExactMatrix, ...], levels: tuple[Fraction, ...], speed: Fraction
+        self,
+        body: RigidBody,
+        matrices: tuple[ExactMatrix, ...],
+        levels: tuple[Fraction, ...],
+        speed: Fraction,
     ) -> None:
         self.body, self.matrices, self.levels = body, matrices, levels
         self._speed = speed
@@ -78,7 +82,9 @@ class GaugeSet(MomentumSet):
         """Least of the bounds by corners, by the nearest ellipsoid and by components."""
         ellipsoids = self.table.ellipsoids(boxes.middle)
         by_ellipsoid = boxes.by_square(ellipsoids)
-        return np.minimum(np.minimum(by_ellipsoid, boxes.by_corners(self)), boxes.by_components(self.widths()))
+        return np.minimum(
+            np.minimum(by_ellipsoid, boxes.by_corners(self)), boxes.by_components(self.widths())
+        )
 
     @cached_property
     def _widths(self) -> Array:

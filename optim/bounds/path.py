@@ -135,7 +135,7 @@ def _nearest(
     highest = max(min(guess, widest), least)
     guess = highest
     if limit is None:
-        for degree in (4, None, None):
+        for degree in (4, None):
             fit = Fit(degree=degree or options.degree_for(guess * speed / 2))
             value = estimated_travel(body, start, momenta, guess=guess, fit=fit)
             if degree is None and 0.96 * guess < value < 0.998 * guess:
@@ -147,9 +147,7 @@ def _nearest(
     for attempt in range(2):
         fit = Fit(degree=degree if limit is None or attempt else min(degree, 5))
         enough = np.inf if limit is None else limit
-        found = separation(
-            body, start, target, momenta, guess=guess, fit=fit, prover=prover, enough=enough
-        )
+        found = separation(body, start, target, momenta, guess=guess, fit=fit, prover=prover, enough=enough)
         if best is None or found.travel > best.travel:
             best = found
         if limit is not None:

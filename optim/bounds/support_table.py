@@ -42,7 +42,10 @@ class SupportTable:
         self.values = np.stack(blocks + blocks[::-1])
         lots = [weights[o * count : (o + 1) * count] for o in range(4)]
         self.weights = np.stack(lots + lots[::-1])
-        inside = points / np.sqrt((np.einsum("ni,kij,nj->nk", points, matrices, points) / levels).max(axis=1))[:, None]
+        inside = (
+            points
+            / np.sqrt((np.einsum("ni,kij,nj->nk", points, matrices, points) / levels).max(axis=1))[:, None]
+        )
         both = np.concatenate([inside, -inside])
         self.boundary = np.unique(np.round(both / np.abs(both).max(), 7), axis=0) * np.abs(both).max()
 
@@ -123,8 +126,8 @@ def _bound_at(matrices: Array, levels: Array, n: Array, weights: Array) -> tuple
     forms = np.einsum("ni,kij,nj->nk", X, matrices, X)
     sizes = np.abs(matrices).sum(axis=(1, 2))
     forms = np.maximum(forms, 0.0) + 1e-14 * (X * X).sum(axis=1)[:, None] * sizes
-    rest = np.abs(n - np.einsum("nij,nj->ni", Q, X)).sum(axis=1) + 1e-14 * np.abs(X).sum(axis=1) * sizes.max() * (
-        np.abs(weights).sum(axis=1)
-    )
+    rest = np.abs(n - np.einsum("nij,nj->ni", Q, X)).sum(axis=1) + 1e-14 * np.abs(X).sum(
+        axis=1
+    ) * sizes.max() * (np.abs(weights).sum(axis=1))
     value = (weights * np.sqrt(levels) * np.sqrt(forms)).sum(axis=1) + np.sqrt(levels[0]) * rest
     return value * (1 + 1e-12), X

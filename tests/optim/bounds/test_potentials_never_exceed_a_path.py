@@ -9,7 +9,7 @@ import pytest
 from intermit.models.rigid_body import RigidBody
 from intermit.optim.bounds import polynomials as poly
 from intermit.optim.bounds.chart import chart_between
-from intermit.optim.bounds.fit import ConeConstraint, Fit
+from intermit.optim.bounds.fit import Fit
 from intermit.optim.bounds.momentum_sets import UnitBall
 from intermit.optim.bounds.prove import BranchAndBound
 from intermit.optim.bounds.rate import exact_inverse, momentum_rate_polynomials
@@ -54,7 +54,6 @@ def proved(body, axis, degrees, guess, degree=5):
         q,
         Target(),
         momenta,
-        ConeConstraint(),
         guess=guess,
         fit=Fit(degree=degree),
         prover=BranchAndBound(),

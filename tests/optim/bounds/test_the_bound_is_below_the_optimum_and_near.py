@@ -7,6 +7,7 @@ import pytest
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import Hermite, PiecewisePolynomial, Window, build_schedule
 from intermit.optim.bounds import certified_lower_bound
+from intermit.optim.norms import LargestComponent
 from intermit.optim.problem import Terminal, TransferProblem, quaternion_from_axis_angle
 
 J1 = RigidBody.from_rows([["3.05", "0.14", "0.05"], ["0.14", "2.66", "0.12"], ["0.05", "0.12", "2.18"]])
@@ -48,3 +49,15 @@ def test_tolerance_lowers_the_bound():
         certified_lower_bound(through(J1, 20, terminal=loose)),
     )
     assert 0.7 * exact.value < near.value < exact.value
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("degrees", "optimum"), [(45, 0.03052295), (90, 0.05861805)])
+def test_largest_component_of_equal_inertias(degrees, optimum):
+    window = PiecewisePolynomial((Fraction(0), Fraction(10)), ((Fraction(1),),))
+    attitude = quaternion_from_axis_angle((0, 0, 1), math.radians(degrees))
+    problem = TransferProblem(body=SPHERE, window=window, attitude=attitude, norm=LargestComponent())
+    bound = certified_lower_bound(problem)
+    assert 0.83 * optimum <= bound.value <= optimum
+    assert bound.name == "components"
+    assert bound.value > 1.2 * {b.name: b.value for b in bound.all}["Euclidean shortest path"]
