@@ -20,6 +20,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from itertools import pairwise
 from typing import final
 
 import numpy as np
@@ -103,7 +104,7 @@ def _cells(window: PiecewisePolynomial, until: Fraction) -> list[Cell]:
     travel = WindowTravel(window)
     edges = sorted({until * k / CELLS for k in range(CELLS + 1)} | {k for k in window.knots if 0 < k < until})
     result = []
-    for a, b in zip(edges, edges[1:], strict=False):
+    for a, b in pairwise(edges):
         up = travel.up(a)
         ratio = travel.opened_area(b)
         if up > 0:

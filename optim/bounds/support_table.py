@@ -85,7 +85,8 @@ class SupportTable:
         """Upper bound of h(v): interpolation, or the nearest node's ellipsoid where that is less."""
         metric = self.ellipsoids(v)
         square = (np.einsum("...ij,...j->...i", metric, v) * v).sum(axis=-1)
-        return np.minimum(self.interpolated(v), np.sqrt(np.maximum(square, 0.0)) * (1 + 1e-12))
+        by_ellipsoid = np.sqrt(np.maximum(square, 0.0)) * (1 + 1e-12)
+        return np.asarray(np.minimum(self.interpolated(v), by_ellipsoid))
 
     def ellipsoids(self, v: Array) -> Array:
         """Matrices W (n, 3, 3) with h(u)^2 <= u'W u for all u, near equality for u along v (n, 3)."""
