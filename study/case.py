@@ -119,7 +119,8 @@ def _algebraic_claims(scenario: Scenario, law: Law) -> Iterator[Claim]:
 
 def _add_torque(claims: dict[str, Claim], found: FloorAnswer) -> None:
     """Without a limit to hold it against, the certified torque bound stands with the convergence."""
-    if found.torque is not None and "torque.limit" not in claims:
+    covered = claims["filter.floor"].verdict is Verdict.PROVED
+    if covered and found.torque is not None and "torque.limit" not in claims:
         convergence = claims["convergence"]
         quantities = (*convergence.quantities, *torque_quantities(found.torque))
         claims["convergence"] = replace(convergence, quantities=quantities)
