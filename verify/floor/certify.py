@@ -46,7 +46,7 @@ class FloorOptions:
     max_periods : periods after which no tail is looked for any more
     """
 
-    degree: int = 6
+    degree: int = 9
     slack: float = 2e-4
     max_bins: int = 24
     max_periods: int = 40
