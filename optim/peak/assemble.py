@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,25 +23,31 @@ GAP_STANDARD = 1e-6
 """Largest relative optimality gap of an answer called CHECKED."""
 
 
+@final
+@dataclass(frozen=True)
+class Effort:
+    """Solver that gave the answer, its iterations and the rounds of refinement, all told."""
+
+    solver: str
+    iterations: int
+    rounds: int
+
+
 def checked(
+    problem: TransferProblem,
     local: LocalAnswer,
     sigma: SwitchingFunction,
     refinement: Refinement,
     record: Search,
-    *,
-    name: str,
-    iterations: int,
-    rounds: int,
+    effort: Effort,
 ) -> PeakAnswer:
-    """Turn a local answer into the user's units and check it from scratch."""
-    scaled, mesh = local.shooting.scaled, local.shooting.mesh
-    problem, units = scaled.problem, scaled.units
-    control = np.zeros((mesh.size, scaled.control_matrix.shape[1]))
-    control[mesh.open] = local.flight.control * units.control
-    history = TorqueHistory(mesh.edges * units.time, mesh.profile, control, problem.norm)
+    """Turn a local answer into the user's units and check it from scratch against the problem as stated."""
+    units = local.shooting.scaled.units
+    history = _history(problem, local)
     flown = fly_again(problem, history)
     ours = local.flight.states * np.r_[np.ones(4), np.full(3, 1 / units.time)]
-    defect = float(np.abs((ours - flown.states) * np.r_[np.ones(4), np.full(3, units.time)]).max())
+    difference = ours - flown.states[: len(ours)]
+    defect = float(np.abs(difference * np.r_[np.ones(4), np.full(3, units.time)]).max())
     faults = []
     if not flown.feasible:
         faults.append(
@@ -64,13 +71,25 @@ def checked(
         optimality_gap=local.gap,
         mesh_gap=sigma.total_loss,
         defect=defect,
-        solver=name,
-        iterations=iterations,
-        rounds=rounds,
+        solver=effort.solver,
+        iterations=effort.iterations,
+        rounds=effort.rounds,
         search=record,
         reason="; ".join(faults),
         next_step="raise the number of starts or cells, or use the other solver" if faults else "",
     )
+
+
+def _history(problem: TransferProblem, local: LocalAnswer) -> TorqueHistory:
+    """Torque history in the user's units; zero after the last window if the solver left that time out."""
+    scaled, mesh = local.shooting.scaled, local.shooting.mesh
+    edges, profile = mesh.edges * scaled.units.time, mesh.profile
+    control = np.zeros((mesh.size, scaled.control_matrix.shape[1]))
+    control[mesh.open] = local.flight.control * scaled.units.control
+    if scaled.problem.horizon < problem.horizon:
+        edges = np.r_[edges, float(problem.horizon)]
+        profile, control = (np.vstack([rows, np.zeros(rows.shape[1])]) for rows in (profile, control))
+    return TorqueHistory(edges, profile, control, problem.norm)
 
 
 def _plot_ready(sigma: SwitchingFunction) -> Switching:

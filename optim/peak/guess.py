@@ -33,9 +33,9 @@ def bend(shooting: Shooting, control: Array, rng: np.random.Generator, size: flo
     return control + _as_control(shooting, extra)
 
 
-def stretched(history: TorqueHistory, mesh: Mesh) -> Array:
-    """Control of another history at the same fractions of the transfer, on the open cells (its own units)."""
-    middle = ((mesh.edges[1:] + mesh.edges[:-1]) / 2)[mesh.open] * history.edges[-1]
+def control_at(history: TorqueHistory, mesh: Mesh, time: float) -> Array:
+    """Control of another history at the same instants, on the open cells (its own units)."""
+    middle = ((mesh.edges[1:] + mesh.edges[:-1]) / 2)[mesh.open] * time
     cell = np.clip(np.searchsorted(history.edges, middle, side="right") - 1, 0, len(history.control) - 1)
     return np.asarray(history.control[cell])
 

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..problem import TransferProblem
-from .assemble import at_rest_already, checked, without_history
+from .assemble import Effort, at_rest_already, checked, without_history
 from .explain import arrives_by_itself, explain
-from .guess import bend, first_guess, stretched
+from .guess import bend, control_at, first_guess
 from .mesh import Mesh, build_mesh
+from .nlp import NonlinearProgram
 from .options import LocalSolver, MultiStart, Refinement
 from .refine import refined, smoothed
 from .result import PeakAnswer, Search, Standing, Start
@@ -29,9 +31,9 @@ def coarse_mesh(problem: TransferProblem, cells: int) -> Mesh:
     """Mesh with about `cells` open cells, none of them or of the arcs turning far."""
     inertias = problem.body.principal_inertias
     wobble = float(inertias[-1] / inertias[0])
-    rate = 1.5 * wobble * float(np.linalg.norm(problem.start_rate)) + 3.0 * problem.angle / float(
-        problem.horizon
-    )
+    tumbling = float(np.linalg.norm(problem.start_rate))
+    moving = float(problem.horizon) if tumbling else float(problem.horizon - problem.open_pieces[0].start)
+    rate = 1.5 * wobble * tumbling + 3.0 * problem.angle / moving
     each = max(2, math.ceil(cells / max(len(problem.open_pieces), 1)))
     parts = []
     for piece in problem.window.pieces:
@@ -61,8 +63,8 @@ def minimum_peak(
     refinement : Refinement, optional
         How fine a mesh.
     near : PeakAnswer, optional
-        Answer of a neighbouring problem (in a sweep, say): its history, stretched to this transfer
-        time, is one more start.
+        Answer of a neighbouring problem (in a sweep, say): its history, at the same
+        instants, is one more start.
 
     Returns
     -------
@@ -83,8 +85,9 @@ def minimum_peak(
         return without_history(problem, standing, nothing.reason, nothing.next_step)
     if arrives_by_itself(problem):
         return at_rest_already(problem)
-    scaled = scale(problem)
-    mesh = coarse_mesh(problem, refinement.cells)
+    active = _until_last_window(problem)
+    scaled = scale(active)
+    mesh = coarse_mesh(active, refinement.cells)
     candidates, record = _search(scaled, mesh, fast, search, near)
     if not candidates:
         return replace(
@@ -96,13 +99,21 @@ def minimum_peak(
             ),
             search=record,
         )
-    tried = [_finish(candidate, fast, solver is None, refinement, record) for candidate in candidates[:1]]
-    best = tried[0]
-    for candidate in candidates[1:]:
-        if best.standing is Standing.CHECKED:
-            break
-        best = _finish(candidate, fast, solver is None, refinement, record)
-    return best if best.standing is Standing.CHECKED else tried[0]
+    finish = _Finish(problem, fast, solver is None, refinement, record)
+    first = finish(candidates[0])
+    if first.standing is Standing.CHECKED:
+        return first
+    others = (finish(candidate) for candidate in candidates[1:])
+    return next((other for other in others if other.standing is Standing.CHECKED), first)
+
+
+def _until_last_window(problem: TransferProblem) -> TransferProblem:
+    """The same transfer without the time after its last window, if it must end at rest.
+
+    Without torque |J w| is constant, so a body at rest at the end is at rest since the last window.
+    """
+    last = problem.open_pieces[-1].end
+    return problem if problem.terminal.rate > 0 or last == problem.horizon else problem.until(last)
 
 
 def _search(
@@ -133,7 +144,7 @@ def _starts(
 ) -> Iterator[tuple[int, int | None, Array]]:
     """Target sign, seed of the bend (None for none) and control of every start."""
     if near is not None and near.history is not None:
-        control = stretched(near.history, mesh) / scaled.units.control
+        control = control_at(near.history, mesh, scaled.units.time) / scaled.units.control
         if control.shape[1] == scaled.control_matrix.shape[1]:
             yield near.sign, None, control
     for number in range(search.starts):
@@ -147,34 +158,42 @@ def _starts(
             yield sign, seed, bend(shooting, control, np.random.default_rng([seed, sign + 1]), search.bend)
 
 
-def _finish(
-    candidate: LocalAnswer, solver: LocalSolver, may_fall_back: bool, refinement: Refinement, record: Search
-) -> PeakAnswer:
-    """Refine one local optimum to the mesh gap, then check it."""
-    local, rounds, total, name = candidate, 0, candidate.iterations, solver.name
-    sigma = switching_function(local)
-    shooting, control = local.shooting, local.flight.control
-    while rounds < refinement.max_rounds:
-        rounds += 1
-        local = solver.solve(shooting, control)
-        total += local.iterations
-        if not local.converged and may_fall_back:
-            local, name = _fall_back(local), "nonlinear program"
+@final
+@dataclass(frozen=True)
+class _Finish:
+    """Refines one local optimum to the mesh gap, then checks it against the problem as stated."""
+
+    problem: TransferProblem
+    solver: LocalSolver
+    may_fall_back: bool
+    refinement: Refinement
+    record: Search
+
+    def __call__(self, candidate: LocalAnswer) -> PeakAnswer:
+        local, rounds, total, solver = candidate, 0, candidate.iterations, self.solver
         sigma = switching_function(local)
-        rough = smoothed(local, refinement.step_error)
-        if rough is not None:
-            shooting, control = rough
-        elif sigma.total_loss > refinement.mesh_gap:
-            shooting, control = refined(sigma, refinement.mesh_gap)
-        else:
-            break
-    return checked(local, sigma, refinement, record, name=name, iterations=total, rounds=rounds)
+        shooting, control = local.shooting, local.flight.control
+        while rounds < self.refinement.max_rounds:
+            rounds += 1
+            local = solver.solve(shooting, control)
+            total += local.iterations
+            if not local.converged and self.may_fall_back and solver is self.solver:
+                # what the fast solver finds hard on one mesh it finds hard on a finer one
+                solver, local = NonlinearProgram(), _fall_back(local)
+            sigma = switching_function(local)
+            rough = smoothed(local, self.refinement.step_error)
+            if rough is not None:
+                shooting, control = rough
+            elif sigma.total_loss > self.refinement.mesh_gap:
+                shooting, control = refined(sigma, self.refinement.mesh_gap)
+            else:
+                break
+        effort = Effort(solver.name, total, rounds)
+        return checked(self.problem, local, sigma, self.refinement, self.record, effort)
 
 
 def _fall_back(local: LocalAnswer) -> LocalAnswer:
     """Nonlinear program from where the fast solver stopped; whichever answer is better converged."""
-    from .nlp import NonlinearProgram
-
     other = NonlinearProgram().solve(local.shooting, local.flight.control)
     better = other.violation <= 1e-8 and other.gap < local.gap
     return other if better else local

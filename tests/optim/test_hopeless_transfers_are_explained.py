@@ -90,3 +90,14 @@ def test_thrusters_that_push_one_way_only_are_named():
     assert "cannot push along" in answer.reason
     normal = np.array([float(x) for x in answer.reason.split("(")[1].split(")")[0].split(",")])
     assert (one_way.control_matrix.T @ normal).max() <= 1e-9
+
+
+@pytest.mark.parametrize(("on", "off"), [(0, 1), (30, 31)])
+def test_a_short_window_far_from_an_end_is_no_obstacle(on, off):
+    """At rest before and after: the same least peak wherever the window lies."""
+    schedule = build_schedule([Window(Fraction(on), Fraction(off))], Hermite())
+    problem = TransferProblem.through(schedule, body=UNIT, horizon=40, attitude=(1, 1, 1, 1))
+    answer = minimum_peak(problem, search=ONE)
+    assert answer.standing is Standing.CHECKED, answer.reason
+    assert answer.peak == pytest.approx(4 * np.radians(120), rel=1e-6)
+    assert answer.history.edges[-1] == 40
