@@ -1477,7 +1477,7 @@ def root_above(value: Fraction) -> Fraction:
 class Box:
     """Bounds that hold throughout a quarter of a step.
 
-    `S` and `y` from above; `R` from above; kappa in [low, high]; g <= `g`; g' in `slope`.
+    `S` and `y` from above; `R` from above; kappa in [low, high]; |g| <= `g`; g' in `slope`.
     """
 
     stop: Fraction
@@ -1517,7 +1517,7 @@ def boxes(d: FloorData, step: FloorStep, limit: Fraction | None) -> list[Box]:
         low, high = ({name: pairs[i][side] for name, pairs in bounds.items()} for side in (0, 1))
         g = d.profile.gain(start, start + length)
         slope = [c / length for c in bernstein(g.derivative())]
-        shared = (max(bernstein(g)), (min(slope), max(slope)))
+        shared = (max(map(abs, bernstein(g))), (min(slope), max(slope)))
         if d.law == "persistence-filter":
             require(low["r"] > 0 and low["K"] > 0, "the floor is not positive")
             share = d.R0 / low["r"]

@@ -40,7 +40,7 @@ class Box:
     weighted_rate : upper bound of y = |Omega|_J, sqrt(kg m^2) rad/s
     filter_low, filter_high : bounds of R, s
     gain_low, gain_high : bounds of kappa, 1/s
-    gain_max : greatest g in the interval
+    gain_max : bound of |g| in the interval
     slope_low, slope_high : bounds of g' in the interval, 1/s
     """
 
@@ -177,6 +177,6 @@ def _gain_extremes(
     for i in range(parts):
         local = poly.compose_affine(shape, Fraction(j * parts + i, n * parts), Fraction(1, n * parts))
         slope = poly.bernstein(poly.scale(poly.derivative(local), parts / length))
-        gain = fraction_above(max(poly.bernstein(local)))
+        gain = fraction_above(max(abs(c) for c in poly.bernstein(local)))
         found.append((gain, fraction_below(min(slope)), fraction_above(max(slope))))
     return tuple(found)
