@@ -50,7 +50,7 @@ lint: install $(VENV)/lint-ready
 	$(BIN)/lint-imports --config pyproject.toml
 
 report: install
-	$(BIN)/intermit check $(SCENARIO)
+	$(BIN)/intermit report $(SCENARIO) -o $(OUT)
 
 $(VENV)/bench-ready: $(VENV)/ready
 	$(BIN)/python -m pip install --quiet ".[fast,bench]" || echo "some competitors could not be installed: they are skipped by name"

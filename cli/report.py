@@ -64,11 +64,12 @@ def run(
 def _study(
     source: Path, out: Path, wanted: tuple[bool, bool, bool], given: tuple[str, str], force: bool
 ) -> tuple[int, Path]:
-    from ..reports.build import write_report
+    from ..reports.build import exit_code, write_report
     from ..reports.folder import refuse
     from ..scenario import load_scenario
-    from ..study.check import CheckOptions
+    from ..study.check import CheckOptions, CheckStudy
     from ..study.report import ReportOptions, run_report
+    from .check_page import print_check
     from .console import note, output, progress
 
     scenario = load_scenario(source)
@@ -77,8 +78,10 @@ def _study(
         note(f"warning: {warning}")
     check = CheckOptions(margins=wanted[2], workers=2)
     options = ReportOptions(optimum=wanted[0], comparison=wanted[1], check=check)
+    studies: list[CheckStudy] = []
     with progress(scenario.name) as step:
-        record = run_report(scenario, options, date=given[0], author=given[1], progress=step)
-    outcome = record.document["outcome"]
-    output().print(outcome["sentence"])
-    return int(outcome["exit_code"]), write_report(record, out, force=force)
+        record = run_report(
+            scenario, options, date=given[0], author=given[1], progress=step, checked=studies.append
+        )
+    print_check(output(), studies)
+    return exit_code(record), write_report(record, out, force=force)

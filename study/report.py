@@ -9,7 +9,7 @@ from typing import final
 from ..reports.join import join
 from ..reports.record import Record
 from ..scenario import Scenario
-from .check import CheckOptions, run_check
+from .check import CheckOptions, CheckStudy, run_check
 from .check_record import check_record
 
 Progress = Callable[[str, float], None]
@@ -39,8 +39,11 @@ def run_report(
     date: str = "",
     author: str = "",
     progress: Progress | None = None,
+    checked: Callable[[CheckStudy], None] | None = None,
 ) -> Record:
     """Run what a report shows and join it into one record; the outcome is the check's.
+
+    `checked` is told the check's findings as soon as they are there.
 
     Raises
     ------
@@ -51,6 +54,8 @@ def run_report(
     tell = progress if progress is not None else _silent
     command = f"intermit report {scenario.path.name}"
     check = run_check(scenario, options.check, _part(tell, 0.0, 0.6))
+    if checked is not None:
+        checked(check)
     records = [check_record(check, date=date, author=author, command=command)]
     if options.optimum:
         from .optimum import OptimumOptions, run_optimum

@@ -136,7 +136,10 @@ def cell(value: Cell, column_unit: str = "") -> dict[str, Any]:
             "text": words(unit_text(value["unit"])),
         }
     written = write(value, unit=not column_unit or column_unit != value.get("unit"))
-    return {"text": words(written.text), "rigorous": written.rigorous and not written.missing}
+    return {
+        "text": words(written.text.replace(" ", "\u00a0")),
+        "rigorous": written.rigorous and not written.missing,
+    }
 
 
 @singledispatch
