@@ -551,6 +551,10 @@ def pick(values: dict[str, Poly], place: Node) -> Poly:
 INERTIA = ("J11", "J12", "J13", "J22", "J23", "J33")
 ATTITUDE = ("b1", "b2", "b3")
 RATE = ("y1", "y2", "y3")
+RESERVED = frozenset(
+    ("b0", "w1", "w2", "w3", "c", "s", "g", "g_rate", "k_target", "weight", *ATTITUDE, *RATE, *INERTIA)
+)
+"""Names that laws may not give to their states, signals and parameters."""
 Triple = list[Poly]
 
 
@@ -598,6 +602,9 @@ def read_loop(data: Node, storage: Node, *, symbolic: bool, J: Matrix | None) ->
     signals = tuple(node.text() for node in law["signals"].items())
     parameters = [node.text() for node in law["parameters"].items()]
     timed = [name for signal in signals for name in (signal, f"{signal}_rate")]
+    for name in (*states, *timed, *parameters):
+        taken = name in RESERVED or _TARGET.fullmatch(name)
+        require(not taken, f"the name {name!r} has a meaning of its own")
     positive = ["k_target", *(["R"] if "R" in states else []), *(["weight", *parameters] if symbolic else [])]
     names = ["k_target", "s", *(["weight", *parameters] if symbolic else []), *states, "g", "g_rate", *timed]
     names += ["c", *ATTITUDE, *RATE, *(INERTIA if J is None else ())]
@@ -658,10 +665,8 @@ def differentiate(loop: Loop, law: Node, storage: Node) -> Derivative:
     ring, symbols = loop.ring, loop.symbols
     free = run(storage["shift_program"], ring, symbols)
     shift = [pick(free, place) for place in storage["shift"].items()]
-    require(
-        len(shift) == 3 and not any(p.uses("g_rate") for p in shift),
-        "the shift must be three functions of state",
-    )
+    plain = len(shift) == 3 and not any(_uses_a_rate(loop, p) for p in shift)
+    require(plain, "the shift must be three functions of the state, g and the signals")
     w = [ring.symbol(name) - shift[i] for i, name in enumerate(RATE)]
     known = {**symbols, **{f"w{i + 1}": w[i] for i in range(3)}}
     control = run(law["program"], ring, known)
@@ -683,10 +688,14 @@ def differentiate(loop: Loop, law: Node, storage: Node) -> Derivative:
     momentum = [on_sphere(momentum[i] + shift_rate[i]) for i in range(3)]
     outputs = run(storage["program"], ring, known)
     value = on_sphere(pick(outputs, storage["value"]))
-    require(not value.uses("g_rate"), "the storage function must not use g'")
+    require(not _uses_a_rate(loop, value), "the storage function must not use g' or the rate of a signal")
     gradient = _momentum_gradient(loop, storage, outputs, [value.derivative(name) for name in RATE])
     rate = along(value) + total([gradient[i] * momentum[i] for i in range(3)], ring)
     return Derivative(value, on_sphere(rate), outputs, shift)
+
+
+def _uses_a_rate(loop: Loop, p: Poly) -> bool:
+    return any(p.uses(f"{name}_rate") for name in ("g", *loop.signals))
 
 
 def _momentum_gradient(loop: Loop, storage: Node, outputs: dict[str, Poly], gradient: Triple) -> Triple:

@@ -255,6 +255,7 @@ def _objective(candidate: Candidate, body: RigidBody, weight: Fraction) -> tuple
     w = theta * z[4:7] - ca.SX(candidate.shift)
     rate, reference = ca.substitute([ca.SX(rate), reference], [loop.plant.w], [w])
     rate, reference = ca.substitute([rate, reference], symbols, values)
-    value = -rate / (ca.fabs(reference) + 1e-3 * ca.sin(theta) ** 2 + 1e-14)
+    # the small terms keep the ratio finite where W vanishes; they lower it by less than 1e-4 of itself
+    value = -rate / (ca.fabs(reference) + 1e-6 * ca.sin(theta) ** 2 + 1e-14)
     arguments = [z, coefficients]
     return ca.Function("f", arguments, [value]), ca.Function("df", arguments, [ca.gradient(value, z)])

@@ -1,0 +1,62 @@
+"""Random bodies and lambdas: no PROVED claim is refuted by search, and the sharp condition decides."""
+
+from fractions import Fraction as F
+
+import lyapunov_cases as cases
+import numpy as np
+import pytest
+from intermit.models.closed_loop import close_loop
+from intermit.models.rigid_body import RigidBody
+from intermit.verify.lyapunov import Falsifier, candidate, derivative_claim, falsify, sharp_condition
+from intermit.verify.verdict import Verdict
+from problems import paper_schedule
+
+OPTIONS = Falsifier(points=100, starts=3)
+
+
+def random_body(rng):
+    """A rotated inertia that satisfies the triangle inequality, entries of three decimals."""
+    masses = rng.uniform(0.5, 20) * rng.uniform(0.3, 1, size=3)
+    principal = np.array([masses[1] + masses[2], masses[0] + masses[2], masses[0] + masses[1]])
+    Q, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+    J = Q @ np.diag(principal) @ Q.T
+    return RigidBody.from_rows(
+        [[F(round(1000 * float((J[i, j] + J[j, i]) / 2)), 1000) for j in range(3)] for i in range(3)]
+    )
+
+
+def attack(count, seed):
+    rng = np.random.default_rng(seed)
+    proved = 0
+    for n in range(count):
+        body = random_body(rng)
+        sharp = 0.5 / np.sqrt(body.principal_inertias[0])
+        lam = F(round(sharp * float(np.exp(rng.uniform(-0.5, 0.7))), 4)).limit_denominator(10**4)
+        law = (cases.persistence, cases.adaptive)[n % 2](lam)
+        chosen = candidate(close_loop(law))
+        claim = derivative_claim(chosen, body)
+        condition = sharp_condition(lam, body)
+        assert claim.verdict is condition.verdict is not Verdict.UNDECIDED
+        found = falsify(chosen, body, schedule=paper_schedule(), options=OPTIONS)
+        if claim.verdict is Verdict.PROVED:
+            proved += 1
+            assert found.witness is None, (law, body)
+            # V'/W stays below minus the certified rate, in the search too
+            assert found.worst <= -claim.quantities[0].low * (1 - 1e-4)
+        else:
+            assert found.witness is not None, (law, body)
+    return proved
+
+
+def test_a_few_random_scenarios():
+    assert attack(6, seed=1) >= 2
+
+
+@pytest.mark.slow
+def test_more_random_scenarios():
+    assert attack(24, seed=2) >= 8
+
+
+@pytest.mark.soak
+def test_many_random_scenarios():
+    assert attack(300, seed=3) >= 100
