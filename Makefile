@@ -10,7 +10,7 @@ export OMP_NUM_THREADS := 1
 
 .PHONY: help venv install test quick lint report bench soak clean
 help:
-	@echo "make report   check the paper's scenario and write the report to $(OUT)/"
+	@echo "make report   check the paper's scenario and write its pages to $(OUT)/"
 	@echo "make test     every test but the soak"
 	@echo "make quick    the tests that take seconds"
 	@echo "make lint     ruff, mypy --strict, import contracts"
