@@ -1484,7 +1484,7 @@ def root_above(value: Fraction) -> Fraction:
 
 @dataclass(frozen=True)
 class Box:
-    """Bounds that hold throughout a quarter of a step.
+    """Bounds that hold throughout an eighth of a step.
 
     `S` and `y` from above; `R` from above; kappa in [low, high]; |g| <= `g`; g' in `slope`.
     """
@@ -1505,23 +1505,22 @@ class Box:
         return root_above(inside * (2 - inside))
 
 
-def quarters(p: Form) -> list[tuple[Fraction, Fraction]]:
-    """Bounds of a polynomial on the four quarters of [0, 1]."""
+def eighths(p: Form) -> list[tuple[Fraction, Fraction]]:
+    """Bounds of a polynomial on the eight equal parts of [0, 1]."""
     controls, scale = p.plain()
-    bounds = []
-    for half in halves(controls):
-        for quarter in halves(half):
-            unit = scale << 2 * (len(controls) - 1)
-            bounds.append((Fraction(min(quarter), unit), Fraction(max(quarter), unit)))
-    return bounds
+    parts = [controls]
+    for _ in range(3):
+        parts = [half for part in parts for half in halves(part)]
+    unit = scale << 3 * (len(controls) - 1)
+    return [(Fraction(min(part), unit), Fraction(max(part), unit)) for part in parts]
 
 
 def boxes(d: FloorData, step: FloorStep, limit: Fraction | None) -> list[Box]:
     """Return the boxes of a step; `limit` bounds L over all later time, where the step repeats."""
-    bounds = {name: quarters(p) for name, p in step.x.items()}
-    length = (step.stop - step.start) / 4
+    bounds = {name: eighths(p) for name, p in step.x.items()}
+    length = (step.stop - step.start) / 8
     result = []
-    for i in range(4):
+    for i in range(8):
         start = step.start + i * length
         low, high = ({name: pairs[i][side] for name, pairs in bounds.items()} for side in (0, 1))
         g = d.profile.gain(start, start + length)

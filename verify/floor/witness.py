@@ -22,7 +22,7 @@ from .sets import InitialSet
 from .tail import PeriodicSystem, Tail
 
 Array = NDArray[np.float64]
-PARTS = 4
+PARTS = 8
 """Equal parts of a step, each of which gets its own box."""
 ROUNDING = 1e-14
 """Relative allowance for the rounding of a convex combination of fewer than 20 floats (2e-15)."""
