@@ -13,13 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...models.closed_loop import close_loop
-from ...models.ensemble import MetricOptions, simulate_ensemble
+from ...models.ensemble import MetricOptions, Tolerances, simulate_ensemble
 from ...models.laws import Law
 from ...models.rigid_body import RigidBody
 from ...models.schedule import Schedule
 from .sets import InitialSet
 
 Array = NDArray[np.float64]
+SEARCHING = Tolerances(rtol=1e-8, atol=1e-10)
+"""The least R found is an estimate: eight digits of each run are more than enough."""
 INSIDE = 1 - 1e-9
 """Keeps sampled states inside the set whatever the rounding."""
 
@@ -168,7 +170,13 @@ class _Shape:
     def run(self, points: Array, horizon: Fraction) -> tuple[Array, Array]:
         """Least R of each point and when."""
         result = simulate_ensemble(
-            self.law, self.body, self.schedule, self.states(points), horizon=horizon, metrics=MetricOptions()
+            self.law,
+            self.body,
+            self.schedule,
+            self.states(points),
+            horizon=horizon,
+            metrics=MetricOptions(),
+            tolerances=SEARCHING,
         )
         assert result.metrics is not None
         values = result.metrics.filter_minimum
