@@ -107,6 +107,19 @@ def ensembles(scale: float) -> tuple[Series, Series]:
     return by_count, by_horizon
 
 
+def optima() -> Series:
+    """Minimum-peak transfers through more and more windows, built and solved."""
+    from intermit.optim.norms import Euclidean
+    from intermit.optim.peak import SequentialConvex
+    from optimum import ours
+
+    points = []
+    for count in (4, 7, 14, 28, 56):
+        seconds, _ = ours(SequentialConvex(), Euclidean(), f"{8 * (count - 1) + 3.22:.2f}")
+        points.append((count, seconds))
+    return {"convex programs, Euclidean": points}
+
+
 def report(title: str, unit: str, series: Series, notes: list[str] | None = None) -> None:
     """Seconds, and the power of the last tenfold."""
     sizes = [x for x, _ in next(iter(series.values()))]
@@ -120,8 +133,10 @@ def report(title: str, unit: str, series: Series, notes: list[str] | None = None
 
 def draw(panels: dict[str, Series]) -> None:
     pyplot = need("matplotlib.pyplot")
-    figure, axes = pyplot.subplots(2, 2, figsize=(9, 6.5), layout="constrained")
-    for axis, (title, series) in zip(axes.ravel(), panels.items(), strict=True):
+    figure, axes = pyplot.subplots(2, 3, figsize=(12, 6.5), layout="constrained")
+    for unused in axes.ravel()[len(panels) :]:
+        unused.set_axis_off()
+    for axis, (title, series) in zip(axes.ravel(), panels.items(), strict=False):
         for name, points in series.items():
             x, y = np.array(points).T
             axis.loglog(x, y, "o-", label=name)
@@ -144,7 +159,17 @@ def main() -> None:
     by_count, by_horizon = ensembles(scale)
     report("Growth with runs (16 s each), seconds", "runs", by_count)
     report("Growth with the horizon (100 runs), seconds", "horizon, s", by_horizon)
-    draw({"samples": by_samples, "windows": by_windows, "runs of 16 s": by_count, "horizon, s": by_horizon})
+    by_transfer = optima()
+    report("Growth of the optimum with windows, seconds", "windows", by_transfer)
+    draw(
+        {
+            "samples": by_samples,
+            "windows": by_windows,
+            "runs of 16 s": by_count,
+            "horizon, s": by_horizon,
+            "windows of a transfer": by_transfer,
+        }
+    )
 
 
 if __name__ == "__main__":
