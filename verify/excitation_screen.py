@@ -37,7 +37,8 @@ def screen(moving: MovingIntegral, segments: Sequence[Segment]) -> tuple[list[in
 
 def _least(box: Array, allowance: Array) -> list[int]:
     """Indices of rows of Bernstein coefficients that may hold the least value of all."""
-    owner: Indices = np.arange(len(box), dtype=np.intp)
+    count = len(box)
+    owner: Indices = np.arange(count, dtype=np.intp)
     settled: list[Indices] = []
     best = np.inf
     for _ in range(ROUNDS):
@@ -48,11 +49,18 @@ def _least(box: Array, allowance: Array) -> list[int]:
         flat = box.max(axis=1) - box.min(axis=1) <= allowance[owner]
         settled.append(owner[flat])
         box, owner = box[~flat], owner[~flat]
-        if len(np.unique(owner)) <= FEW:
+        if len(_distinct(owner, count)) <= FEW:
             break
         left, right = _halves(box)
         box, owner = np.concatenate([left, right]), np.concatenate([owner, owner])
-    return [int(i) for i in np.unique(np.concatenate([*settled, owner]))]
+    return [int(i) for i in _distinct(np.concatenate([*settled, owner]), count)]
+
+
+def _distinct(owner: Indices, count: int) -> Indices:
+    """The numbers below `count` that occur, ascending: by marking them, which needs no sorting."""
+    present = np.zeros(count, dtype=bool)
+    present[owner] = True
+    return np.flatnonzero(present)
 
 
 def _bernstein(moving: MovingIntegral, segments: Sequence[Segment]) -> tuple[Array, Array, Array]:
