@@ -168,3 +168,8 @@ def test_a_record_with_nothing_in_it_still_makes_a_page() -> None:
 
     empty = Record.create(title="t", provenance=provenance(scenario_name="s", scenario_text=""), sections={})
     assert "No claim was asked for." in page_of(empty)
+
+
+def test_a_study_without_claims_leads_with_its_summary() -> None:
+    record = make(cases=None, schedule=None, optimum=None)
+    assert "Every point is simulated again." in page_of(record).split("</header>")[0]
