@@ -1,6 +1,7 @@
 """Lyapunov claims are PROVED with a certificate the checker accepts, or REFUTED by an exact state."""
 
 import dataclasses
+import json
 import random
 from fractions import Fraction as F
 
@@ -219,3 +220,41 @@ def test_rational_points_lie_on_their_spheres_near_the_given_ones():
         np.testing.assert_allclose([float(x) for x in exact], q, atol=1e-5)
     n = rational_direction([0.0, -1.0, 0.0])
     assert n == (0, -1, 0)
+
+
+@pytest.mark.parametrize(
+    ("law", "tolerance"),
+    [
+        (cases.persistence("0.3"), None),
+        (cases.adaptive("0.3"), None),
+        (cases.persistence("0.345"), cases.tolerance("0.1")),
+        (cases.HeavierDamping(F("0.525"), F(1), F("0.5")), None),
+        (PersistenceFilterAsPrinted(F("0.525"), F(1)), None),
+    ],
+)
+def test_a_counterexample_is_a_certificate_too(law, tolerance):
+    claim = verdicts(law, cases.J1, tolerance=tolerance)["lyapunov.derivative"]
+    assert claim.verdict is Verdict.REFUTED
+    (certificate,) = certificates_of([claim])
+    text = certificate_text([certificate])
+    (finding,) = checker.check_text(text)
+    assert finding.valid
+    assert finding.kind == "lyapunov-counterexample"
+    document = json.loads(text)
+    state = document["parts"][0]["certificates"][0]["claim"]["state"]
+    state["rate"] = ["0", "0", "0"]
+    state["g"] = state["g_rate"] = "0"  # nothing moves but the filter: V' = -lambda V
+    assert not checker.check_text(json.dumps(document))[0].valid
+    state["quaternion"][0] = "2"
+    assert "unit norm" in checker.check_text(json.dumps(document))[0].reason
+
+
+def test_a_counterexample_must_lie_in_the_domain():
+    claim = verdicts(cases.adaptive("0.3"), cases.J1)["lyapunov.derivative"]
+    document = json.loads(certificate_text(certificates_of([claim])))
+    stated = document["parts"][0]["certificates"][0]["claim"]
+    stated["state"]["controller"]["R"] = "0.5"  # below R_min = 1/k_target = 1
+    assert "below its range" in checker.check_text(json.dumps(document))[0].reason
+    stated["state"]["controller"]["R"] = "2"
+    stated["inertia"] = [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]
+    assert not checker.check_text(json.dumps(document))[0].valid

@@ -17,7 +17,7 @@ from .conditions import ExactRows, sharp_condition, vertices
 from .derivative import DecayCertificate, NoCertificateError, certify_decay
 from .falsify import falsify
 from .identity import identity_certificate
-from .refutation import refute_sign
+from .refutation import Refutation, counterexample, refute_sign
 
 SOURCE = "docs/theory-lyapunov.md; Ram & Akella, AAS 21-402"
 NEXT_STEP = "raise lambda, or give the law a storage function of its own (Law.storage)"
@@ -46,15 +46,15 @@ def derivative_claim(
             within = "" if bound is None else f", 0 <= g <= {float(bound):.6g}"
             rho = f"V' <= -rho W with rho = {float(proof.rate):.9g} 1/s{_where(candidate)}{within}"
             return _proved(key, rho, proof)
-    witness = _refute(candidate, body, tolerance, weight)
-    if witness is not None:
-        return _claim(key, statement, Verdict.REFUTED, witness=witness)
+    refutation = _refute(candidate, body, tolerance, weight)
+    if refutation is not None:
+        return _refuted(key, statement, candidate, refutation, body, tolerance, weight)
     theorem = _by_sharp_condition(candidate, body, tolerance)
     if theorem:
         return _claim(key, statement, Verdict.PROVED, evidence=theorem)
     search = falsify(candidate, body, schedule=schedule, weight=weight)
-    if search.witness is not None:
-        return _claim(key, statement, Verdict.REFUTED, witness=search.witness)
+    if search.refutation is not None:
+        return _refuted(key, statement, candidate, search.refutation, body, tolerance, weight)
     return _claim(key, statement, Verdict.UNDECIDED, reason=f"{reason}; {search.summary}")
 
 
@@ -77,9 +77,10 @@ def rate_claim(
     try:
         proof = _certify(candidate, body, tolerance, weight, None)
     except NoCertificateError as error:
-        witness = _refute(candidate, body, tolerance, weight or Fraction(1))
-        if witness is not None:
-            return _claim("lambda.rate", statement, Verdict.REFUTED, witness=witness)
+        chosen = Fraction(1) if weight is None else weight
+        refutation = _refute(candidate, body, tolerance, chosen)
+        if refutation is not None:
+            return _refuted("lambda.rate", statement, candidate, refutation, body, tolerance, chosen)
         return _claim("lambda.rate", statement, Verdict.UNDECIDED, reason=str(error))
     if proof.rate == 0:
         reason = "only V' <= 0 was certified: the best rate is zero or too small to round"
@@ -120,16 +121,26 @@ def _certify(
 
 
 def _refute(
+    candidate: Candidate, body: RigidBody, tolerance: ExactRows | None, weight: Fraction
+) -> Refutation | None:
+    found = (refute_sign(candidate, J, weight) for J in vertices(body.exact_inertia, tolerance))
+    return next((refutation for refutation in found if refutation is not None), None)
+
+
+def _refuted(
+    key: str,
+    statement: str,
     candidate: Candidate,
+    refutation: Refutation,
     body: RigidBody,
     tolerance: ExactRows | None,
     weight: Fraction,
-) -> Witness | None:
-    for J in vertices(body.exact_inertia, tolerance):
-        witness = refute_sign(candidate, J, weight)
-        if witness is not None:
-            return witness
-    return None
+) -> Claim:
+    """Claim refuted by a state, with a certificate of V' > 0 there where the checker can compute V'."""
+    certificate = counterexample(candidate, refutation, body, tolerance=tolerance, weight=weight)
+    details = {} if certificate is None else {"certificate": certificate}
+    evidence = Evidence(EvidenceKind.WITNESS, "evaluated exactly in rationals", SOURCE, details)
+    return _claim(key, statement, Verdict.REFUTED, evidence=(evidence,), witness=refutation.witness)
 
 
 def _by_sharp_condition(
@@ -187,8 +198,6 @@ def _claim(
         "lyapunov.derivative": "Sign of V'",
         "lambda.rate": "Certified decay rate of the weighted family",
     }
-    if witness is not None:
-        evidence = (Evidence(EvidenceKind.WITNESS, "evaluated exactly in rationals", SOURCE),)
     return Claim(
         key=key,
         title=titles[key],

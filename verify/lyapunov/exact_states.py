@@ -79,12 +79,18 @@ class ExactState:
         values |= {name: float(x) for name, x in self.controller.items()}
         return values | {"g": float(self.gain), "g_rate": float(self.gain_rate)}
 
-    def exact(self) -> dict[str, Any]:
-        """Exact coordinates as text, by name."""
-        named = {"quaternion": self.quaternion, "rate": self.rate}
-        values: dict[str, Any] = {name: [str(x) for x in xs] for name, xs in named.items()}
-        values |= {name: str(x) for name, x in self.controller.items()}
-        return values | {"g": str(self.gain), "g_rate": str(self.gain_rate), "floor": str(self.floor)}
+    def claimed(self, signals: Sequence[str]) -> dict[str, Any]:
+        """Exact coordinates as a certificate states them."""
+        timed = dict(zip((x for name in signals for x in (name, f"{name}_rate")), self.signals, strict=True))
+        return {
+            "quaternion": self.quaternion,
+            "rate": self.rate,
+            "controller": self.controller,
+            "g": self.gain,
+            "g_rate": self.gain_rate,
+            "k_target": self.floor,
+            **timed,
+        }
 
 
 def rational_quaternion(quaternion: Sequence[float], *, denominator: int = 10**6) -> tuple[Fraction, ...]:

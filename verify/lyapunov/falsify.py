@@ -23,18 +23,17 @@ from ...models.laws import Expression
 from ...models.lowering import UnknownOperationError, evaluate
 from ...models.rigid_body import RigidBody
 from ...models.schedule import Schedule
-from ..rational_quantity import rational_quantity
 from ..verdict import Witness
 from .candidates import Candidate
 from .exact_states import (
     EXACT,
-    ExactDerivative,
     ExactState,
     IrrationalError,
     loop_arguments,
     program_of,
     rational_quaternion,
 )
+from .refutation import Refutation, at_state
 
 Array = NDArray[np.float64]
 SMALLEST_ANGLE = 1e-3
@@ -78,15 +77,20 @@ class Falsification:
     Attributes
     ----------
     worst : largest V'/W found, 1/s, in floats
-    witness : exact state with V' > 0, or None
+    refutation : exact state with V' > 0, or None
     evaluations : how often V' was evaluated
     reason : why a violation seen in floats has no exact witness, if so
     """
 
     worst: float
-    witness: Witness | None
+    refutation: Refutation | None
     evaluations: int
     reason: str = ""
+
+    @property
+    def witness(self) -> Witness | None:
+        """The state as a witness against V' <= 0."""
+        return None if self.refutation is None else self.refutation.witness
 
     @property
     def summary(self) -> str:
@@ -123,9 +127,9 @@ def falsify(
     for value, z, coefficients in search.found:
         if value <= ROUNDING:
             break
-        witness, reason = search.exact_witness(z, coefficients)
-        if witness is not None:
-            return Falsification(search.found[0][0], witness, search.evaluations)
+        refutation, reason = search.exact_refutation(z, coefficients)
+        if refutation is not None:
+            return Falsification(search.found[0][0], refutation, search.evaluations)
     return Falsification(search.found[0][0], None, search.evaluations, reason)
 
 
@@ -185,20 +189,16 @@ class _Search:
         high += [1.0] * self._signals + [length]
         return np.array(low), np.array(high)
 
-    def exact_witness(self, z: Array, coefficients: Sequence[Fraction]) -> tuple[Witness | None, str]:
+    def exact_refutation(self, z: Array, coefficients: Sequence[Fraction]) -> tuple[Refutation | None, str]:
         """Move a violation to rationals and evaluate V' there."""
+        J = [list(row) for row in self._body.exact_inertia]
         try:
-            state = self._exact_state(z, coefficients)
-            J = self._body.exact_inertia
-            rate, reference, _ = ExactDerivative(self._candidate, J, weight=self._weight).at(state)
+            found = at_state(self._candidate, J, self._weight, self._exact_state(z, coefficients))
         except (IrrationalError, UnknownOperationError, ZeroDivisionError) as error:
             return None, f"V' > 0 was seen in floats but could not be evaluated exactly: {error}"
-        if rate <= 0:
+        if found is None:
             return None, "V' > 0 was seen in floats but not at the rational state beside it"
-        values = state.floats() | {"W": float(reference)}
-        if self._candidate.floor is not None:
-            values["k_target"] = float(state.floor)
-        return Witness("at this state V grows", values, rational_quantity("V'", rate)), ""
+        return found, ""
 
     def _exact_state(self, z: Array, coefficients: Sequence[Fraction]) -> ExactState:
         theta = math.exp(z[0])

@@ -1,31 +1,92 @@
-"""States with V' > 0, exactly, constructed for the weighted family below its sharp condition."""
+"""States with V' > 0, exactly, and their certificates; below the sharp condition they can be constructed."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any, final
 
+from ...models.rigid_body import RigidBody
+from .. import checker
+from ..certificates.format import Certificate, certificate_text
+from ..certificates.program import NotAlgebraicError
 from ..checker import Matrix
 from ..rational_quantity import rational_quantity
 from ..verdict import Witness
 from .candidates import Candidate
+from .conditions import ExactRows
 from .definiteness import negative_direction, shifted
 from .exact_states import ExactDerivative, ExactState, rational_direction
+from .forms import inertia_data, law_form, parameter_data, storage_form
 
 SIZES = tuple(Fraction(1, 2**n) for n in range(2, 40, 3))
 
 
-def refute_sign(candidate: Candidate, J: Matrix, weight: Fraction) -> Witness | None:
+@final
+@dataclass(frozen=True)
+class Refutation:
+    """A state with V' > 0 at one inertia, exactly."""
+
+    state: ExactState
+    inertia: Matrix
+    witness: Witness
+
+
+def at_state(candidate: Candidate, J: Matrix, weight: Fraction, state: ExactState) -> Refutation | None:
+    """Return the refutation by a state, or None if V' <= 0 there.
+
+    Raises
+    ------
+    ArithmeticError, ValueError
+        If V' cannot be evaluated without rounding.
+    """
+    rate, reference, _ = ExactDerivative(candidate, J, weight=weight).at(state)
+    if rate <= 0:
+        return None
+    values = state.floats() | {"W": float(reference), "inertia": [float(x) for row in J for x in row]}
+    if candidate.floor is not None:
+        values["k_target"] = float(state.floor)
+    witness = Witness("at this state V grows", values, rational_quantity("V'", rate))
+    return Refutation(state, J, witness)
+
+
+def refute_sign(candidate: Candidate, J: Matrix, weight: Fraction) -> Refutation | None:
     """State of the family's own construction with V' > 0 at one inertia, or None."""
-    derivative = ExactDerivative(candidate, J, weight=weight)
-    for state in _family_states(candidate, J, weight):
-        rate, reference, _ = derivative.at(state)
-        if rate > 0:
-            violation = rational_quantity("V'", rate)
-            values = state.floats() | {"W": float(reference), "inertia": [float(x) for row in J for x in row]}
-            return Witness("at this state V grows", values, violation)
-    return None
+    tried = (at_state(candidate, J, weight, state) for state in _family_states(candidate, J, weight))
+    return next((found for found in tried if found is not None), None)
+
+
+def counterexample(
+    candidate: Candidate,
+    refutation: Refutation,
+    body: RigidBody,
+    *,
+    tolerance: ExactRows | None,
+    weight: Fraction,
+) -> Certificate | None:
+    """Certificate of V' > 0 that the checker accepts; None for laws it cannot compute."""
+    try:
+        law, storage = law_form(candidate.loop), storage_form(candidate, weight=weight)
+    except NotAlgebraicError:
+        return None
+    storage.pop("reference")
+    rows = None if tolerance is None else tuple(tuple(row) for row in tolerance)
+    data = {
+        **inertia_data(body.exact_inertia, rows),
+        "law": law,
+        "parameters": parameter_data(candidate.loop),
+    }
+    signals = list(candidate.loop.time_symbols.signals)
+    domain = "above floor" if candidate.floor is not None else "everywhere"
+    claim: dict[str, Any] = {"storage": storage, "domain": domain}
+    claim["state"] = refutation.state.claimed(signals)
+    if "inertia_tolerance" in data:
+        claim["inertia"] = refutation.inertia
+    certificate = Certificate("lyapunov-counterexample", data, claim)
+    findings = checker.check_text(certificate_text([certificate]))
+    return certificate if all(finding.valid for finding in findings) else None
 
 
 def _family_states(candidate: Candidate, J: Matrix, weight: Fraction) -> Iterator[ExactState]:
