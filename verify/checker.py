@@ -959,10 +959,11 @@ def check_lyapunov_counterexample(data: Node, certificate: Node) -> list[str]:
     values |= {name: w[i] + result.shift[i].at(values) for i, name in enumerate(RATE)}
     rate = result.rate.at(values)
     require(rate > 0, f"V' = {show(rate)} at the state is not positive")
+    attitude, body_rate = show_matrix([quaternion]), show_matrix([w])
+    others = [f"{name} = {show(values[name])}" for name in (*loop.states, "g", "g_rate", "k_target")]
     return [
-        f"V' = {show(rate)} > 0 at quaternion {[show(x) for x in quaternion]}, rate {[show(x) for x in w]} rad/s,",
-        ", ".join(f"{name} = {show(values[name])}" for name in (*loop.states, "g", "g_rate", "k_target"))
-        + ",",
+        f"V' = {show(rate)} > 0 at quaternion {attitude}, rate {body_rate} rad/s,",
+        ", ".join(others) + ",",
         f"for V = {result.value.text()},",
         f"y = w + ({', '.join(p.text() for p in result.shift)}), c = 1 - b0,",
         f"{describe_law(data, symbolic=False)}, inertia J = {show_matrix(J)} kg m^2",
