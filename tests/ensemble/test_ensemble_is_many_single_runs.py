@@ -142,3 +142,17 @@ def test_inputs_that_do_not_fit_are_named(change, message):
     inputs = {"laws": ADAPTIVE, "bodies": BODY, "initial_states": initial_states(2), "times": ()} | change
     with pytest.raises(ValueError, match=message):
         simulate_ensemble(schedule=SCHEDULE, horizon=HORIZON, **inputs)
+
+
+@pytest.mark.slow
+def test_stacks_may_go_to_other_processes():
+    """Everything a stack needs travels: the interface is that of a cluster's executor too."""
+    from concurrent.futures import ProcessPoolExecutor
+    from multiprocessing import get_context
+
+    starts = initial_states(5)
+    laws = [replace(ADAPTIVE, gamma=Fraction(i, 10)) for i in range(1, 6)]
+    here = simulate_ensemble(laws, BODY, SCHEDULE, starts, horizon=HORIZON)
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+        there = simulate_ensemble(laws, BODY, SCHEDULE, starts, horizon=HORIZON, executor=pool, stack=3)
+    np.testing.assert_allclose(there.final_states, here.final_states, rtol=0, atol=1e-12)
