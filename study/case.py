@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import partial
 from typing import final
 
@@ -48,12 +49,14 @@ class Findings:
     Attributes
     ----------
     claims : in the order of the claim keys
+    reference_floor : R_min in V's k* = 1/R_min, s; None where none is known
     curves : certified bounds over the scenario's horizon; None where nothing reaches that far
     samples : sampled derivative of V; None where the law has no storage function
     notes : what a reader should know beside the claims
     """
 
     claims: tuple[Claim, ...]
+    reference_floor: Fraction | None
     curves: CertifiedCurves | None
     samples: SampledDerivative | None
     notes: tuple[str, ...] = ()
@@ -100,7 +103,7 @@ def find(
         _add_samples(claims, samples)
     ordered = tuple(sorted(claims.values(), key=lambda claim: order_of(claim.key)))
     curves = certified_curves(found.floor, float(scenario.horizon)) if found.floor is not None else None
-    return Findings(ordered, curves, samples, (f"V' was not sampled: {why_not}",) if why_not else ())
+    return Findings(ordered, floor, curves, samples, (f"V' was not sampled: {why_not}",) if why_not else ())
 
 
 def decided_claims(scenario: Scenario, law: Law) -> tuple[Claim, ...]:

@@ -18,7 +18,8 @@ from ..verify.derivative import SampledDerivative
 from .case import Case
 from .check import CheckStudy
 from .claims import claim_entries, quantity_entry, witness_entry
-from .run import run_entry
+from .run import output_times, run_entry
+from .storage_history import storage_history
 
 Array = NDArray[np.float64]
 SHOWN_WINDOWS = 2000
@@ -167,7 +168,11 @@ def case_entry(scenario: Scenario, case: Case, key: str) -> tuple[dict[str, Any]
     arrays: dict[str, Array] = {}
     notes = list(case.findings.notes)
     if case.run is not None and case.run.trajectory is not None:
-        entry, arrays = run_entry(scenario, case.run, f"{key}.run", case.choice.label)
+        derivative = next((claim for claim in case.claims if claim.key == "lyapunov.derivative"), None)
+        history = storage_history(
+            case.run.trajectory, output_times(scenario), case.findings.reference_floor, derivative
+        )
+        entry, arrays = run_entry(scenario, case.run, f"{key}.run", case.choice.label, history)
         runs.append(entry)
     elif case.run is not None:
         notes.append(case.run.failure)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, final
 
@@ -122,8 +123,13 @@ def _figure(name: str, value: float, unit: str) -> dict[str, Any]:
     return parts.figure_of(name, value, digits=6, unit=unit)
 
 
-def run_entry(scenario: Scenario, run: Run, key: str, label: str) -> tuple[dict[str, Any], dict[str, Array]]:
-    """A run as the record's mapping and its arrays, on the scenario's output grid."""
+def run_entry(
+    scenario: Scenario, run: Run, key: str, label: str, further: Mapping[str, Array] | None = None
+) -> tuple[dict[str, Any], dict[str, Array]]:
+    """A run as the record's mapping and its arrays, on the scenario's output grid (`output_times`).
+
+    `further` holds more histories on that grid, by their role in the record.
+    """
     assert run.trajectory is not None
     trajectory = run.trajectory
     times = output_times(scenario)
@@ -137,6 +143,7 @@ def run_entry(scenario: Scenario, run: Run, key: str, label: str) -> tuple[dict[
         f"{key}.gain": signals.gain,
         f"{key}.error_rate": signals.augmented_rate.T,
     }
+    arrays |= {f"{key}.{role}": value for role, value in (further or {}).items()}
     roles: dict[str, Any] = {name.removeprefix(f"{key}."): name for name in arrays}
     controller = trajectory.loop.state_names[7:]
     if controller:
