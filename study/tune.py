@@ -16,7 +16,7 @@ from ..optim.tuning.search import DifferentialEvolution
 from ..optim.tuning.tune import Tuned, tune
 from ..reports import parts
 from ..reports.record import Record
-from ..scenario import Scenario, ScenarioError
+from ..scenario import LawChoice, Scenario, ScenarioError
 from .collections import Arrays, certified_below, collection_record, newtons, task_of
 
 
@@ -49,7 +49,7 @@ def run_tuning(
         label=label,
         ranges=scenario.tune.bounds,
         method=_method(scenario, seed),
-        certify=conditions(scenario),
+        certify=conditions_on(scenario, scenario.law(label)),
     )
 
 
@@ -65,7 +65,7 @@ def run_front(
         norm=norm or scenario.tune.norm,
         method=_method(scenario, None),
         certify={
-            c.label: conditions(scenario) for c in scenario.laws if c.type in CERTIFIABLE
+            c.label: found for c in scenario.laws if (found := conditions_on(scenario, c)) is not None
         },
         executor=executor,
     )  # fmt: skip
@@ -75,8 +75,10 @@ CERTIFIABLE = ("adaptive-scaling", "persistence-filter")
 """Laws with a comparison system: the others are tuned without certified conditions, and said so."""
 
 
-def conditions(scenario: Scenario) -> CertifiedConvergence:
-    """R_min > 0 and convergence proved over the scenario's initial set."""
+def conditions_on(scenario: Scenario, choice: LawChoice) -> CertifiedConvergence | None:
+    """R_min > 0 and convergence proved over the scenario's initial set; None where no proof can apply."""
+    if choice.type not in CERTIFIABLE:
+        return None
     bounds = scenario.initial_set
     return CertifiedConvergence(
         task_of(scenario), bounds.max_angle_deg, bounds.max_rate, bounds.max_weighted_rate
@@ -137,6 +139,7 @@ def tuning_record(scenario: Scenario, tuned: Tuned) -> Record:
                 "tables": tables,
                 "figures": figures_out,
                 "notes": [f"refused: {reason}" for _, reason in tuned.refused]
+                + _uncertified(scenario, [tuned.label])
                 + ["A seeded global search: an upper bound on the least peak this law can reach."],
             }
         },
@@ -144,6 +147,15 @@ def tuning_record(scenario: Scenario, tuned: Tuned) -> Record:
         seeds={"search": tuned.history.seed},
         options={"settle": float(tuned.settle), "norm": tuned.norm, "trials": len(tuned.history.trials)},
     )
+
+
+def _uncertified(scenario: Scenario, labels: Sequence[str]) -> list[str]:
+    """One line for each law that was tuned without certified conditions."""
+    return [
+        f"{label}: no certified condition exists for this law; its answer is simulated, nothing is proved of it."
+        for label in labels
+        if scenario.law(label).type not in CERTIFIABLE
+    ]
 
 
 def _summary(tuned: Tuned) -> str:
@@ -189,7 +201,8 @@ def front_record(scenario: Scenario, front: Front) -> Record:
                 alt="Peak torque against settling time for each law and for the optimum with its bound.",
             )
         ],
-        "notes": ["No controller whatever lies below the certified bound."],
+        "notes": ["No controller whatever lies below the certified bound."]
+        + _uncertified(scenario, list(front.runs)),
     }  # fmt: skip
     return collection_record(
         scenario,

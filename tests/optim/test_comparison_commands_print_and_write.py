@@ -63,6 +63,28 @@ def test_tune_reports_parameters_and_history(scenario, tmp_path):
 
 
 @pytest.mark.slow
+def test_front_has_a_certified_band_below_every_law(scenario, tmp_path, capsys):
+    out = tmp_path / "front.json"
+    words = ["--front", "--settle", "28,36", "--peak-norm", "euclidean", "--json", str(out)]
+    assert run(["tune", str(scenario), *words]) == 0
+    capsys.readouterr()
+    rows = record(out)["front"]["tables"][0]["rows"]
+    assert len(rows) == 2
+    for row in rows:
+        assert row["bound"]["low"] <= row["optimum"]["high"] <= row["law1"]["high"]
+    assert rows[1]["optimum"]["high"] < rows[0]["optimum"]["low"]
+
+
+@pytest.mark.slow
+def test_a_law_without_certificate_is_tuned_and_said_so(tmp_path, capsys):
+    path = tmp_path / "pd.toml"
+    pd = 'type = "quaternion-pd"\nlabel = "PD"\nproportional = 0.5\nderivative = 1.6'
+    path.write_text(SMALL.replace('type = "persistence-filter"\nlabel = "filter"', pd))
+    assert run(["tune", str(path), "--settle", "40"]) == 0
+    assert "nothing is proved of it" in " ".join(capsys.readouterr().out.split())
+
+
+@pytest.mark.slow
 def test_sweep_reports_each_case(scenario, tmp_path):
     out = tmp_path / "sweep.json"
     assert run(["sweep", str(scenario), "--peak-norm", "euclidean", "--json", str(out)]) == 0
