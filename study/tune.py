@@ -152,7 +152,7 @@ def tuning_record(scenario: Scenario, tuned: Tuned) -> Record:
 def _uncertified(scenario: Scenario, labels: Sequence[str]) -> list[str]:
     """One line for each law that was tuned without certified conditions."""
     return [
-        f"{label}: no certified condition exists for this law; its answer is simulated, nothing is proved of it."
+        f"{label}: no certified condition exists for this law; it is simulated, nothing is proved of it."
         for label in labels
         if scenario.law(label).type not in CERTIFIABLE
     ]
@@ -201,8 +201,7 @@ def front_record(scenario: Scenario, front: Front) -> Record:
                 alt="Peak torque against settling time for each law and for the optimum with its bound.",
             )
         ],
-        "notes": ["No controller whatever lies below the certified bound."]
-        + _uncertified(scenario, list(front.runs)),
+        "notes": ["No controller whatever lies below the certified bound.", *_uncertified(scenario, list(front.runs))],
     }  # fmt: skip
     return collection_record(
         scenario,
