@@ -201,7 +201,10 @@ def front_record(scenario: Scenario, front: Front) -> Record:
                 alt="Peak torque against settling time for each law and for the optimum with its bound.",
             )
         ],
-        "notes": ["No controller whatever lies below the certified bound.", *_uncertified(scenario, list(front.runs))],
+        "notes": [
+            "No controller whatever lies below the certified bound.",
+            *_uncertified(scenario, list(front.runs)),
+        ],
     }  # fmt: skip
     return collection_record(
         scenario,
