@@ -28,6 +28,9 @@ def run(
     bound: Annotated[
         bool, typer.Option("--bound/--no-bound", help="Certify a lower bound beside each optimum.")
     ] = True,
+    least_time: Annotated[
+        bool, typer.Option("--least-time", help="Find the least transfer time within the torque limit too.")
+    ] = False,
     debug: Debug = False,
 ) -> int:
     """Find the least peak torque any controller could do with through the windows."""
@@ -45,7 +48,9 @@ def run(
     for key in norm or ():
         if key not in norms:
             raise InputError(f"--norm {key}: expected component, euclidean or thrusters")
-    options = OptimumOptions(norms=norms, starts=starts, seed=seed, solver=solver, bound=bound)
+    options = OptimumOptions(
+        norms=norms, starts=starts, seed=seed, solver=solver, bound=bound, least_time=least_time
+    )
     with progress(loaded.name) as step:
         study = run_optimum(loaded, options, step)
     print_optimum(output(), study)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Literal, final
 
@@ -13,7 +13,7 @@ from ..scenario import Scenario
 
 if TYPE_CHECKING:
     from ..optim.bounds import LowerBound
-    from ..optim.peak import PeakAnswer
+    from ..optim.peak import LeastTime, PeakAnswer
     from ..optim.peak.explain import Explanation
     from ..optim.peak.options import LocalSolver
 
@@ -40,6 +40,7 @@ class OptimumOptions:
     solver : "auto" is the fast one with the reference as fallback
     mesh_gap : largest fraction of the peak that finer cells may still gain
     bound : compute the certified lower bound beside each optimum
+    least_time : find the least transfer time within the limit too, where one is given
     """
 
     norms: tuple[NormKey, ...] = ()
@@ -48,6 +49,7 @@ class OptimumOptions:
     solver: SolverKey = "auto"
     mesh_gap: float = 1e-6
     bound: bool = True
+    least_time: bool = False
 
 
 @final
@@ -62,6 +64,7 @@ class Optimum:
     limit : the torque (or force) limit given for this norm, its unit, or None
     hopeless : why the limit cannot be met by any controller, or None
     bound : certified lower bound, computed apart from the answer; None where there is none
+    least_time : least transfer time within the limit; None if not asked for
     """
 
     key: NormKey
@@ -70,6 +73,7 @@ class Optimum:
     limit: float | None
     hopeless: Explanation | None
     bound: LowerBound | None = None
+    least_time: LeastTime | None = None
 
     @property
     def gap(self) -> float | None:
@@ -129,7 +133,7 @@ def run_optimum(
     scenario: Scenario, options: OptimumOptions | None = None, progress: Progress | None = None
 ) -> OptimumStudy:
     """Find the least peak of the scenario's transfer in each norm."""
-    from ..optim.peak import MultiStart, Refinement, minimum_peak
+    from ..optim.peak import MultiStart, Refinement, minimum_peak, minimum_time
     from ..optim.peak.explain import explain
 
     options = options if options is not None else OptimumOptions()
@@ -139,7 +143,7 @@ def run_optimum(
         starts=table.starts if options.starts is None else options.starts,
         seed=table.seed if options.seed is None else options.seed,
     )
-    refinement = Refinement(mesh_gap=options.mesh_gap)
+    refinement, quick = Refinement(mesh_gap=options.mesh_gap), Refinement(mesh_gap=1e-5)
     keys, optima = norm_keys(scenario, options), []
     for i, key in enumerate(keys):
         tell(f"optimum, {key}", i / len(keys))
@@ -147,7 +151,12 @@ def run_optimum(
         limit = limit_of(scenario, key)
         hopeless = explain(problem, limit)
         answer = minimum_peak(problem, solver=_solver(options.solver), search=search, refinement=refinement)
-        optima.append(Optimum(key, problem, answer, limit, hopeless, _bound(problem, answer, options)))
+        bound = _bound(problem, answer, options)
+        least = None
+        if options.least_time and limit is not None and hopeless is None:
+            tell(f"least time, {key}", (i + 0.5) / len(keys))
+            least = minimum_time(problem, limit, search=replace(search, starts=1), refinement=quick)
+        optima.append(Optimum(key, problem, answer, limit, hopeless, bound, least))
     tell("done", 1.0)
     return OptimumStudy(scenario, options, tuple(optima))
 

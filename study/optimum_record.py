@@ -14,7 +14,7 @@ from .check_record import scenario_entry
 from .optimum import Optimum, OptimumStudy
 
 if TYPE_CHECKING:
-    from ..optim.peak import Switching, TorqueHistory
+    from ..optim.peak import LeastTime, Switching, TorqueHistory
 
 Array = NDArray[np.float64]
 
@@ -94,6 +94,16 @@ def optimum_entry(study: OptimumStudy, optimum: Optimum) -> tuple[dict[str, Any]
     return entry, held
 
 
+def least_time_words(least: LeastTime) -> str:
+    """The least time found and the latest at which none was, in words."""
+    if least.time is None:
+        return f"no transfer within {least.limit:g} was found by {float(least.earlier):g} s"
+    return (
+        f"least time within {least.limit:g}: {float(least.time):.6g} s "
+        f"(none found by {float(least.earlier):.6g} s; {least.solves} least peaks solved)"
+    )
+
+
 def _lower(name: str, value: float, unit: str) -> dict[str, Any]:
     return parts.quantity(name, value, unit=unit, rigorous=True, side="lower")
 
@@ -138,6 +148,8 @@ def notes(optimum: Optimum) -> list[str]:
         said.append(f"Reason: {answer.reason}. Next step: {answer.next_step}.")
     if optimum.hopeless is not None:
         said.append(f"Limit: {optimum.hopeless.reason}. Next step: {optimum.hopeless.next_step}.")
+    if optimum.least_time is not None:
+        said.append(least_time_words(optimum.least_time).capitalize() + ".")
     if answer.history is not None:
         said.append("The best of the starts: an upper bound on the least peak, local optimality checked.")
     return said

@@ -96,6 +96,14 @@ def test_momentum_that_the_windows_cannot_absorb_is_explained(tmp_path, capsys):
     assert "limit 0.5 N m" in said
 
 
+def test_least_time_within_the_limit(tmp_path, capsys):
+    path = scenario(tmp_path, more="torque_limit = 0.2\nstarts = 1")
+    assert run(["optimum", str(path), "--norm", "component", "--no-bound", "--least-time"]) == 0
+    said = capsys.readouterr().out
+    assert "limit 0.2 N m is enough" in said
+    assert "least time within 0.2: " in said
+
+
 def test_thrusters_give_a_force(tmp_path, capsys):
     axes = "thrusters = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]\nstarts = 1"
     assert run(["optimum", str(scenario(tmp_path, more=axes))]) == 0
