@@ -3,9 +3,9 @@
     python benchmarks/optimum.py [rounds]
 
 Same body, same windows, same ten equal cells a window with constant torque, so the same optimum.
-Each round builds everything anew and solves, the tools taking turns; medians of processor
-time (one thread each) are printed. The imports are not counted. Every answer is integrated again by the package's independent check, so
-that the accuracy stands beside the time.
+Each round builds everything anew and solves, the tools taking turns; medians of processor time (one
+thread each) are printed. The imports are not counted. Every answer is integrated again by the
+package's independent check, so that the accuracy stands beside the time.
 """
 
 from __future__ import annotations
