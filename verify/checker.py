@@ -20,6 +20,7 @@ for each kind of certificate, then the command line.
 from __future__ import annotations
 
 import json
+import math
 import re
 import sys
 from bisect import bisect_right
@@ -1821,6 +1822,416 @@ def check_floquet(data: Node, certificate: Node) -> list[str]:
         else f"some Floquet multiplier is above {show(r)} in modulus{fate}",
         f"for x' = (A - g(t) B K) x, A = {show_matrix(A)}, B = {show_matrix(B)}, K = {show_matrix(K)},",
         describe_profile(profile),
+    ]
+
+
+# --- kind: lower bound of the peak torque -----------------------------------------------------------
+#
+# No torque with |torque(t)| <= p w(t) and p < peak takes the start to the target. Proof: |H|' <= p w
+# for H = J w, so the travel, the integral of |H|, is at most N0 s + Nf (tf - s) + p A(s); and the
+# travel to either quaternion of the target is at least D. The latter by the rotation angle, or by a
+# potential phi of the modified Rodrigues vector x of m^-1 q with |J^-1 (body gradient)| <= rate
+# wherever a path of travel below D can pass: a spherical ellipse {F >= 0, |x| <= outer}.
+# Polynomials live on boxes as integers in units of 2^-PEAK_BITS; every rounding is counted.
+
+PEAK_BITS = 100
+PEAK_BOXES = 400_000
+Solid = list[list[list[int]]]
+"""Coefficients [i][j][k], i + j + k <= degree, of a polynomial of t in [-1, 1]^3."""
+Cubic = dict[tuple[int, int, int], Fraction]
+
+
+def root_interval(value: Fraction) -> tuple[Fraction, Fraction]:
+    """Enclose the square root of a number >= 0."""
+    require(value >= 0, "square root of a negative number")
+    root = isqrt((value.numerator << 192) // value.denominator)
+    return Fraction(root, 1 << 96), Fraction(root + 1, 1 << 96)
+
+
+def length_interval(values: Sequence[Fraction]) -> tuple[Fraction, Fraction]:
+    """Enclose a Euclidean length."""
+    return root_interval(sum((x * x for x in values), Fraction(0)))
+
+
+def arctangent_below(t: Fraction) -> Fraction:
+    """Lower bound of atan(t) for 0 <= t < 1: the alternating series cut after a negative term."""
+    require(0 <= t < 1, "arctangent outside [0, 1)")
+    t = Fraction(math.floor(t * 2**48), 2**48)
+    value, power = Fraction(0), t
+    for k in range(120):
+        value += (-power if k % 2 else power) / (2 * k + 1)
+        power *= t * t
+    return Fraction(math.floor(value * 2**60), 2**60)
+
+
+class PeakWindow:
+    """Exact integrals of w >= 0 on [0, horizon], piece by piece."""
+
+    def __init__(self, place: Node) -> None:
+        self.knots = place["knots"].vector()
+        shapes = [shape.vector() for shape in place["shapes"].items()]
+        require(
+            len(self.knots) == len(shapes) + 1 and self.knots[0] == 0, "window: knots and shapes disagree"
+        )
+        require(all(a < b for a, b in pairwise(self.knots)), "window: knots must increase")
+        self.first, self.second = [Fraction(0)], [Fraction(0)]
+        self.rises: list[tuple[Vector, Vector]] = []
+        for (a, b), shape in zip(pairwise(self.knots), shapes, strict=True):
+            one = [Fraction(0)] + [c * (b - a) / (i + 1) for i, c in enumerate(shape)]
+            two = [Fraction(0)] + [c * (b - a) / (i + 1) for i, c in enumerate(one)]
+            self.rises.append((one, two))
+            self.second.append(self.second[-1] + self.first[-1] * (b - a) + sum(two))
+            self.first.append(self.first[-1] + sum(one))
+
+    def area(self, s: Fraction) -> Fraction:
+        """int_0^s up + int_s^tf (total - up)."""
+        horizon = self.knots[-1]
+        require(0 <= s <= horizon, "the instant must lie within the transfer")
+        i = max(k for k in range(len(self.rises)) if self.knots[k] <= s)
+        x = (s - self.knots[i]) / (self.knots[i + 1] - self.knots[i])
+        inner = self.second[i] + self.first[i] * (s - self.knots[i])
+        inner += sum((c * x**k for k, c in enumerate(self.rises[i][1])), Fraction(0))
+        return inner + self.first[-1] * (horizon - s) - (self.second[-1] - inner)
+
+
+def quaternion_times(a: Vector, b: Vector) -> Vector:
+    """Hamilton product, scalar first."""
+    return [
+        a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
+        a[0] * b[1] + b[0] * a[1] + a[2] * b[3] - a[3] * b[2],
+        a[0] * b[2] + b[0] * a[2] + a[3] * b[1] - a[1] * b[3],
+        a[0] * b[3] + b[0] * a[3] + a[1] * b[2] - a[2] * b[1],
+    ]
+
+
+def cubic_sum(*terms: Cubic) -> Cubic:
+    """Sum of polynomials in three variables."""
+    result: Cubic = {}
+    for term in terms:
+        for e, c in term.items():
+            result[e] = result.get(e, Fraction(0)) + c
+    return result
+
+
+def cubic_times(p: Cubic, q: Cubic) -> Cubic:
+    """Product."""
+    result: Cubic = {}
+    for a, x in p.items():
+        for b, y in q.items():
+            e = (a[0] + b[0], a[1] + b[1], a[2] + b[2])
+            result[e] = result.get(e, Fraction(0)) + x * y
+    return result
+
+
+def cubic_scale(p: Cubic, factor: Fraction) -> Cubic:
+    """Multiple."""
+    return {e: factor * c for e, c in p.items()}
+
+
+def cubic_at(p: Cubic, centre: Vector) -> Cubic:
+    """Taylor coefficients at a point."""
+    result: Cubic = {}
+    for (a, b, c), value in p.items():
+        for i in range(a + 1):
+            for j in range(b + 1):
+                for k in range(c + 1):
+                    factor = comb(a, i) * comb(b, j) * comb(c, k)
+                    moved = centre[0] ** (a - i) * centre[1] ** (b - j) * centre[2] ** (c - k)
+                    result[(i, j, k)] = result.get((i, j, k), Fraction(0)) + value * factor * moved
+    return result
+
+
+class PeakChart:
+    """Coordinates x / outer about a middle attitude m, and the region of short paths in them."""
+
+    def __init__(self, place: Node) -> None:
+        self.middle, self.direction = place["middle"].vector(3), place["direction"].vector(3)
+        self.inner, self.outer = place["inner"].number(), place["outer"].number()
+        require(sum(c * c for c in self.direction) == 1, "the direction must be of length 1")
+        require(0 <= self.inner <= self.outer < 1 and self.outer > 0, "expected 0 <= inner <= outer < 1")
+        square = sum((c * c for c in self.middle), Fraction(0))
+        self.quaternion = [(1 - square) / (1 + square)] + [2 * c / (1 + square) for c in self.middle]
+
+    def region(self) -> list[Cubic]:
+        """F and 1 - |x / outer|^2: both >= 0 wherever the path can be."""
+        t, h = self.outer, self.inner
+        one: Cubic = {(0, 0, 0): Fraction(1)}
+        unit: Cubic = {(2, 0, 0): Fraction(1), (0, 2, 0): Fraction(1), (0, 0, 2): Fraction(1)}
+        along = {(1, 0, 0): self.direction[0], (0, 1, 0): self.direction[1], (0, 0, 1): self.direction[2]}
+        less = cubic_sum(one, cubic_scale(unit, -(t**2)))
+        more = cubic_sum(one, cubic_scale(unit, t**2))
+        cosines = ((1 - h**2) / (1 + h**2) * (1 + t**2) / (1 - t**2)) ** 2
+        sines = (h / (1 + h**2) * (1 + t**2) / t) ** 2
+        first = cubic_scale(cubic_times(less, less), cosines)
+        second = cubic_scale(cubic_times(along, along), 4 * t**2 * sines)
+        ellipse = cubic_sum(first, second, cubic_scale(cubic_times(more, more), Fraction(-1)))
+        return [ellipse, cubic_sum(one, cubic_scale(unit, Fraction(-1)))]
+
+    def locate(self, q: Vector) -> tuple[Vector, Fraction]:
+        """Modified Rodrigues vector of m^-1 q/|q| and a bound of the error of each component."""
+        m = self.quaternion
+        r = quaternion_times([m[0], -m[1], -m[2], -m[3]], q)
+        low, high = length_interval(q)
+        require(r[0] + low > 0, "the start is opposite to the middle of the chart")
+        x = [c / (r[0] + high) for c in r[1:]]
+        error = max(abs(c) for c in r[1:]) * (high - low) / (r[0] + low) ** 2
+        rounded = [Fraction(round(c * 2**96), 2**96) for c in x]
+        return rounded, error + Fraction(1, 2**96)
+
+    def arc_to_model(self, x: Vector, side: int) -> Fraction:
+        """Upper bound of the arc from x to a model end point: the metric is at most 2 |dx|."""
+        return (
+            2
+            * length_interval([c - side * self.inner * n for c, n in zip(x, self.direction, strict=True)])[1]
+        )
+
+
+def largest_near(p: Cubic, centre: Vector, radius: Fraction) -> Fraction:
+    """Upper bound of a polynomial within a distance of a point."""
+    local = cubic_at(p, centre)
+    value = local.pop((0, 0, 0), Fraction(0))
+    slopes = [local.pop(e, Fraction(0)) for e in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]
+    value += length_interval(slopes)[1] * radius
+    return value + sum((abs(c) * radius ** sum(e) for e, c in local.items()), Fraction(0))
+
+
+def rate_polynomials(phi: Cubic, J: Matrix, t: Fraction) -> list[Cubic]:
+    """1/4 J^-1 [(1 - |x|^2) g - 2 x cross g + 2 (x.g) x] for g = grad phi, in scaled coordinates x / t."""
+    g: list[Cubic] = []
+    x: list[Cubic] = []
+    for axis in range(3):
+        unit = tuple(int(i == axis) for i in range(3))
+        x.append({(unit[0], unit[1], unit[2]): Fraction(1)})
+        slope: Cubic = {}
+        for e, c in phi.items():
+            if e[axis]:
+                slope[(e[0] - unit[0], e[1] - unit[1], e[2] - unit[2])] = e[axis] * c
+        g.append(slope)
+    square = cubic_sum(*(cubic_times(a, a) for a in x))
+    dot = cubic_sum(*(cubic_times(a, b) for a, b in zip(x, g, strict=True)))
+    body = []
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        swirl = cubic_sum(cubic_times(x[j], g[k]), cubic_scale(cubic_times(x[k], g[j]), Fraction(-1)))
+        straight = cubic_sum(cubic_scale(g[i], 1 / t), cubic_scale(cubic_times(square, g[i]), -t))
+        bent = cubic_scale(cubic_times(x[i], dot), 2 * t)
+        body.append(cubic_sum(straight, cubic_scale(swirl, Fraction(-2)), bent))
+    inverse = inverse_matrix(J)
+    return [cubic_sum(*(cubic_scale(body[j], inverse[i][j] / 4) for j in range(3))) for i in range(3)]
+
+
+def as_solid(p: Cubic, degree: int) -> Solid:
+    """Integer coefficients, each rounded down by less than one unit."""
+    span = range(degree + 1)
+    return [
+        [
+            [math.floor(p.get((i, j, k), Fraction(0)) * 2**PEAK_BITS) for k in range(degree + 1 - i - j)]
+            for j in range(degree + 1 - i)
+        ]
+        for i in span
+    ]
+
+
+def cut_solid(p: Solid) -> tuple[Solid, Solid]:
+    """Both halves along the last coordinate, as polynomials of (last, first, middle).
+
+    Halving rounds every coefficient down by less than one unit; moving by one half adds only.
+    The absolute sum of an error does not grow, so each cut adds at most one unit a coefficient.
+    """
+    size = len(p)
+    low: Solid = [[[0] * (size - i - j) for j in range(size - i)] for i in range(size)]
+    high: Solid = [[[0] * (size - i - j) for j in range(size - i)] for i in range(size)]
+    for i, plane in enumerate(p):
+        for j, line in enumerate(plane):
+            up = [c >> k for k, c in enumerate(line)]
+            down = list(up)
+            for start in range(len(line) - 1):
+                for k in range(len(line) - 2, start - 1, -1):
+                    up[k] += up[k + 1]
+                    down[k] -= down[k + 1]
+            for k in range(len(line)):
+                high[k][i][j] = up[k]
+                low[k][i][j] = down[k]
+    return low, high
+
+
+def solid_sum(p: Solid) -> int:
+    """Sum of the absolute values of all coefficients but the constant."""
+    return sum(abs(c) for plane in p for line in plane for c in line) - abs(p[0][0][0])
+
+
+def square_above(v: list[Solid], error: int) -> int:
+    """Upper bound of |v|^2 over the box, units 2^-2 PEAK_BITS: second-order terms are formed first."""
+    value, lines, twos, pairs, beyond = 0, [0] * 3, [0] * 3, [0] * 3, 0
+    for p in v:
+        c = p[0][0][0]
+        d = (p[1][0][0], p[0][1][0], p[0][0][1])
+        q = (p[2][0][0], p[0][2][0], p[0][0][2])
+        m = (p[0][1][1], p[1][0][1], p[1][1][0])
+        turn, bend = sum(map(abs, d)), sum(map(abs, q)) + sum(map(abs, m))
+        tail = solid_sum(p) - turn - bend + error
+        value += c * c
+        for a in range(3):
+            lines[a] += 2 * c * d[a]
+            twos[a] += 2 * c * q[a] + d[a] * d[a]
+            pairs[a] += 2 * (c * m[a] + d[(a + 1) % 3] * d[(a + 2) % 3])
+        beyond += 2 * (abs(c) + turn + bend) * tail + tail * tail + 2 * turn * bend + bend * bend
+    known = sum(map(abs, lines)) + sum(max(x, 0) for x in twos) + sum(map(abs, pairs))
+    return value + known + beyond
+
+
+def require_rate(v: list[Cubic], region: list[Cubic], rate: Fraction) -> int:
+    """Prove |v| <= rate on the region within [-1, 1]^3, by cutting boxes; return how many were needed."""
+    degree = max(2, *(sum(e) for p in v for e in p))
+    limit = math.floor(rate * rate * 2 ** (2 * PEAK_BITS))
+    first = [as_solid(p, degree) for p in v]
+    sides = [as_solid(p, 4) for p in region]
+    unit = (degree + 1) * (degree + 2) * (degree + 3) // 6
+    stack = [(first, sides, 0)]
+    count = 0
+    while stack:
+        v_box, g_box, depth = stack.pop()
+        count += 1
+        require(count <= PEAK_BOXES and depth < 80, "the rate of the potential is not proved")
+        error = unit * (depth + 1)
+        if any(p[0][0][0] + solid_sum(p) + 35 * (depth + 1) < 0 for p in g_box):
+            continue
+        if square_above(v_box, error) <= limit:
+            continue
+        cut = [cut_solid(p) for p in v_box]
+        cut_sides = [cut_solid(p) for p in g_box]
+        for half in (0, 1):
+            stack.append(([c[half] for c in cut], [c[half] for c in cut_sides], depth + 1))
+    return count
+
+
+def travel_by_angle(q: Vector, arc: Fraction, least: Fraction) -> Fraction:
+    """Travel from the rotation angle alone: 2 Jmin times the arc left outside the tolerance."""
+    low, high = length_interval(q)
+    vector = length_interval(q[1:])
+    pi = Fraction(3141592653589793238, 10**18)
+    if q[0] >= 0:
+        t = vector[0] / (high + q[0])
+        reached = 2 * arctangent_below(t) if t < 1 else pi / 2
+        if Fraction(7, 10) <= t < 1:
+            reached = pi / 2 - 2 * _arctangent_above((1 - t) / (1 + t))
+    else:
+        reached = pi - 2 * _arctangent_above(vector[1] / (low - q[0]))
+    return 2 * least * (reached - arc)
+
+
+def _arctangent_above(t: Fraction) -> Fraction:
+    """Upper bound of atan(t), t >= 0."""
+    quarter = Fraction(3141592653589793239, 4 * 10**18)
+    if t <= Fraction(1, 100):
+        return t - t**3 / 3 + t**5 / 5
+    if t >= 1:
+        return quarter + (t - 1)
+    return quarter - arctangent_below((1 - t) / (1 + t))
+
+
+@dataclass(frozen=True)
+class PeakTarget:
+    """Terminal tolerance as an arc and as a chord of the sphere of quaternions, rounded up."""
+
+    arc: Fraction
+    chord: Fraction
+
+    @classmethod
+    def of(cls, radius: Fraction) -> PeakTarget:
+        """Targets |bv| <= radius."""
+        require(0 <= radius < 1, "the terminal tolerance must lie in [0, 1)")
+        if radius == 0:
+            return cls(Fraction(0), Fraction(0))
+        cosine = root_interval(1 - radius**2)[0]
+        require(cosine > 0, "the terminal tolerance is too large")
+        return cls(radius / cosine, root_interval(2 - 2 * cosine)[1])
+
+    def radius(self, x: Vector) -> Fraction:
+        """Upper bound of the distance in the chart from x to any target around it."""
+        size = length_interval(x)[1]
+        require(size + self.chord <= 1, "the terminal tolerance is too large for the chart")
+        reach = self.chord
+        for _ in range(3):
+            reach = min(reach, self.chord * root_interval((1 + size**2) * (1 + (size + reach) ** 2))[1] / 2)
+            reach = Fraction(math.ceil(reach * 2**60), 2**60)
+        return reach
+
+
+def require_separation(
+    place: Node, J: Matrix, q: Vector, target: PeakTarget, least: Fraction, travel: Fraction
+) -> str:
+    """Prove that every motion from q to the quaternion +1 travels at least `travel`."""
+    if place["by"].text() == "angle":
+        require(
+            travel_by_angle(q, target.arc, least) >= travel, "the rotation angle does not give the travel"
+        )
+        return "by the rotation angle"
+    require(place["by"].text() == "potential", "a separation is by angle or by potential")
+    chart = PeakChart(place["chart"])
+    phi: Cubic = {}
+    for entry in place["potential"].items():
+        i, j, k, c = entry.vector(4)
+        require(all(x.denominator == 1 and 0 <= x <= 12 for x in (i, j, k)), "exponents must be integers")
+        phi[(int(i), int(j), int(k))] = c
+    rate = place["rate"].number()
+    require(rate > 0, "the rate must be positive")
+    start, error = chart.locate(q)
+    end = [-c for c in chart.middle]
+    slack = chart.arc_to_model(start, 1) + 4 * error + chart.arc_to_model(end, -1) + target.arc
+    require(
+        2 * least * (4 * arctangent_below(chart.outer) - slack) >= travel,
+        "a path of that travel may leave the region",
+    )
+    t = chart.outer
+    high = largest_near(phi, [c / t for c in end], target.radius(end) / t)
+    low = -largest_near(cubic_scale(phi, Fraction(-1)), [c / t for c in start], 2 * error / t)
+    require(low - high >= travel * rate, "the potential does not differ enough between start and target")
+    boxes_used = require_rate(rate_polynomials(phi, J, t), chart.region(), rate)
+    return f"by a potential of degree {max(sum(e) for e in phi)}, proved on {boxes_used} boxes"
+
+
+@kind("peak-lower-bound")
+def check_peak_lower_bound(data: Node, certificate: Node) -> list[str]:
+    """Prove that no torque of a smaller Euclidean peak makes the transfer."""
+    J = read_inertia(data)
+    transfer, claim, witness = data["transfer"], certificate["claim"], certificate["witness"]
+    window = PeakWindow(transfer["window"])
+    q, w = transfer["attitude"].vector(4), transfer["rate"].vector(3)
+    require(any(q), "the start attitude must not be zero")
+    tolerance, end_rate = transfer["tolerance"]["attitude"].number(), transfer["tolerance"]["rate"].number()
+    require(end_rate >= 0, "the terminal rate tolerance must not be negative")
+    least, greatest = witness["inertia_above"].number(), witness["inertia_below"].number()
+    require(least > 0, "the lower bound of the inertia must be positive")
+    for side, bound in ((1, least), (-1, greatest)):
+        gap = [[side * (J[i][j] - (bound if i == j else 0)) for j in range(3)] for i in range(3)]
+        require(is_positive_semidefinite(gap), "the principal inertias are not within the bounds given")
+    H0 = [sum((row[k] * w[k] for k in range(3)), Fraction(0)) for row in J]
+    start, end = (length_interval(H0)[1] if any(w) else Fraction(0)), greatest * end_rate
+    travel, s, peak = witness["travel"].number(), witness["instant"].number(), claim["peak"].number()
+    area = window.area(s)
+    require(peak > 0 and area > 0, "the peak must be positive and the window must open")
+    horizon = window.knots[-1]
+    require(
+        start * s + end * (horizon - s) + peak * area <= travel, "a transfer of that peak may travel enough"
+    )
+    target = PeakTarget.of(tolerance)
+    signs = transfer["signs"].vector()
+    require(bool(signs) and all(x in (1, -1) for x in signs), "target signs are +1 or -1")
+    found = witness["separations"].items()
+    require(len(found) == len(signs), "one separation for each target sign")
+    words = []
+    for sign, place in zip(signs, found, strict=True):
+        words.append(require_separation(place, J, [sign * c for c in q], target, least, travel))
+    opened, ends = show(window.first[-1]), " or ".join(f"{int(x):+d}" for x in signs)
+    return [
+        f"no torque with |torque(t)| <= p w(t) and p < {show(peak)} N m takes the start to the target:",
+        f"inertia J = {show_matrix(J)} kg m^2,",
+        f"transfer time {show(horizon)} s, integral of the window profile {opened} s,",
+        f"start quaternion along ({', '.join(show(c) for c in q)}),",
+        f"start rate ({', '.join(show(c) for c in w)}) rad/s, target quaternion {ends},",
+        f"terminal tolerance |bv| <= {show(tolerance)}, |w| <= {show(end_rate)} rad/s;",
+        f"travel at least {show(travel)} N m s^2: " + "; ".join(words),
     ]
 
 

@@ -126,7 +126,7 @@ def _by_components(
     if all(b >= r for b, r in zip(near, first.widths, strict=True)):
         return []
     beta: Widths = (near[0], near[1], near[2])
-    path = _path(problem, momenta.with_box(beta), options)
+    path = path_of(problem, momenta.with_box(beta), options)
     peaks = [
         peak_from_components(sides, component_bounds(momenta, sides, trial), beta, path.travel)
         for trial in (Fraction(float(known) * factor) for factor in TRIALS)
@@ -139,17 +139,22 @@ def _momentum_and_path(
 ) -> list[NamedBound]:
     """Both bounds that a set of momenta gives."""
     windows = WindowTravel(problem.window)
-    rows = problem.body.exact_inertia
-    H = [sum((row[k] * problem.rate[k] for k in range(3)), Fraction(0)) for row in rows]
-    H0 = (H[0], H[1], H[2])
+    H0 = start_momentum(problem)
     end = momenta.size_of_rate(problem.terminal.rate)
     absorbed = momentum_peak(windows, momenta.size_below(H0), end)
-    path = _path(problem, momenta, options)
+    path = path_of(problem, momenta, options)
     peak = least_peak(windows, path.travel, momenta.size_above(H0), end)
     return [NamedBound(names[0], absorbed), NamedBound(names[1], peak.value)]
 
 
-def _path(problem: TransferProblem, momenta: MomentumSet, options: PathOptions) -> PathBound:
+def start_momentum(problem: TransferProblem) -> tuple[Fraction, Fraction, Fraction]:
+    """J w at the start, exactly."""
+    rows = problem.body.exact_inertia
+    H = [sum((row[k] * problem.rate[k] for k in range(3)), Fraction(0)) for row in rows]
+    return H[0], H[1], H[2]
+
+
+def path_of(problem: TransferProblem, momenta: MomentumSet, options: PathOptions) -> PathBound:
     """Path bound of the problem's attitude, remembered."""
     target = Target(problem.terminal.attitude)
     key = (momenta.key(), problem.attitude, target, problem.signs, options)
