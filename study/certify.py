@@ -5,18 +5,20 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, final
 
 from ..models.closed_loop import close_loop
 from ..scenario import Scenario
 from ..scenario.laws import USER
 from ..verify.certificates import Certificate, as_text, certificate_text
+from ..verify.certificates.excitation import excitation_certificate
 from ..verify.certificates.program import NotAlgebraicError
 from ..verify.floor.certificate import question_data
 from ..verify.lyapunov import certificates_of
 from ..verify.lyapunov.forms import inertia_data, law_form
-from ..verify.verdict import Claim
+from ..verify.verdict import Claim, Evidence, EvidenceKind, Verdict
+from ..verify.zero_runs import default_length
 from .case import decided_claims
 from .check import scenario_claims
 from .floor import floor_question
@@ -47,11 +49,26 @@ class Certification:
 
 def certify(scenario: Scenario, progress: Progress) -> Certification:
     """Decide the claims of a scenario by exact means and collect their certificates."""
-    claims = [("schedule", claim) for claim in scenario_claims(scenario)]
+    claims = [("schedule", _with_certificate(claim, scenario)) for claim in scenario_claims(scenario)]
     for i, choice in enumerate(scenario.laws):
         progress(choice.label, i / len(scenario.laws))
         claims += [(choice.label, claim) for claim in decided_claims(scenario, choice.build())]
     return Certification(tuple(claims), certificates_of(claim for _, claim in claims))
+
+
+def _with_certificate(claim: Claim, scenario: Scenario) -> Claim:
+    """Put a certificate under the claim of persistent excitation, where there is one."""
+    if claim.key != "schedule.excitation" or claim.verdict is not Verdict.PROVED:
+        return claim
+    length = scenario.check.pe_window
+    certificate = excitation_certificate(
+        scenario.schedule, default_length(scenario.schedule) if length is None else length
+    )
+    if certificate is None:
+        return claim
+    summary = "the moving integral of g^2 enclosed by Bernstein coefficients, by the stand-alone checker"
+    evidence = Evidence(EvidenceKind.CERTIFICATE, summary, claim.source, {"certificate": certificate})
+    return replace(claim, evidence=(*claim.evidence, evidence))
 
 
 def differences(text: str, scenario: Scenario) -> tuple[str, ...]:
