@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from .torque_bound import TorqueBound
 
 KIND = "filter-floor"
+MANTISSA = 53
+"""Bits of a float's mantissa."""
 LAW_PARAMETERS = ("lambda", "gamma", "R0", "k0", "a")
 
 
@@ -121,11 +123,11 @@ def _steps(steps: Iterable[Step]) -> list[dict[str, Any]]:
 
 def scaled_integers(values: Sequence[float]) -> list[int]:
     """[e, n_0, n_1, ...] with values[i] = n_i 2^e exactly."""
-    exponents = [frexp(v)[1] - 53 for v in values if v != 0.0]
+    parts = [frexp(v) for v in values]
+    exponents = [e - MANTISSA for m, e in parts if m != 0.0]
     if not exponents:
         return [0, *(0 for _ in values)]
     e = min(exponents)
-    integers = [int(Fraction(v) / Fraction(2) ** e) for v in values]
-    while all(n % 2 == 0 for n in integers):
-        integers, e = [n // 2 for n in integers], e + 1
-    return [e, *integers]
+    integers = [int(m * 2**MANTISSA) << max(x - MANTISSA - e, 0) for m, x in parts]
+    shift = min((n & -n).bit_length() - 1 for n in integers if n)
+    return [e + shift, *(n >> shift for n in integers)]

@@ -5,8 +5,8 @@ The answer is a list of witnesses, one a bin of the initial set, each true as it
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 from heapq import heapify, heappop, heappush
@@ -20,7 +20,7 @@ from .adaptive import AdaptiveSystem
 from .comparison import BodyBounds
 from .persistence import PersistenceSystem
 from .sets import InitialSet
-from .tail import Tail, find_tail
+from .tail import LARGEST_RATIO, Tail, find_tail
 from .witness import LawComparison, Witness
 
 NEAR_BLIND = 1.9
@@ -168,34 +168,48 @@ class _Run:
     horizon: Fraction | None
     options: FloorOptions
 
+    _known: list[Stepper] = field(default_factory=list)
+
     def _stepper(self, system: ComparisonSystem | None = None) -> Stepper:
-        return Stepper(system or self.system, degree=self.options.degree, slack=self.options.slack)
+        """Return a stepper that starts from the step sizes the last one of the main system found."""
+        stepper = Stepper(system or self.system, degree=self.options.degree, slack=self.options.slack)
+        if self._known:
+            stepper.remember(self._known[-1])
+        if system is None:
+            self._known[:] = [stepper]
+        return stepper
 
     def complete(self, early: Witness) -> Witness:
         """Go on from an early witness to the horizon, or to a tail as soon as that costs nothing."""
         if early.stuck is not None:
             return early
         steps, least = list(early.steps), early.floor
-        period = self.schedule.period
+        period, stepper = self.schedule.period, self._stepper()
         for start, stop in self._spans(early.end):
             state = steps[-1].end_state() if steps else None
             values = self.system.start(early.initial) if state is None else tuple(state.values())
             try:
-                steps += self._stepper().run(self.schedule, start, stop, values)
+                steps += stepper.run(self.schedule, start, stop, values)
             except CannotProceedError as stuck:
                 return Witness(self.system, early.initial, (*steps, *stuck.steps), stuck=stuck.time)
             if period is None or stop % period != 0:
                 continue
             least = min(least, *(min(s.controls["r"]) for s in steps if s.start >= start))
-            tail = self._tail(stop, tuple(steps[-1].end_state().values()))
+            state = steps[-1].end_state()
+            before = next((s.end_state() for s in steps if s.stop == stop - period), None)
+            tail = self._tail(stop, state, before) if before is not None else None
             if tail is not None:
                 lowest = min(min(s.controls["r"]) for s in tail.steps)
                 if lowest >= 0.999 * least or stop >= self.options.max_periods * period:
                     return Witness(self.system, early.initial, tuple(steps), tail)
         return Witness(self.system, early.initial, tuple(steps))
 
-    def _tail(self, start: Fraction, state: tuple[float, ...]) -> Tail | None:
-        system, first = self.system.tail(state)
+    def _tail(self, start: Fraction, state: Mapping[str, float], before: Mapping[str, float]) -> Tail | None:
+        """Look for a tail if the last period already shrank what must shrink; `before` is its start."""
+        system, first = self.system.tail(tuple(state.values()))
+        names = [name for group in system.decaying for name in group]
+        if any(state[name] > LARGEST_RATIO * before[name] for name in names):
+            return None
         return find_tail(system, self.schedule, start, first, self._stepper(system))
 
     def _spans(self, start: Fraction) -> list[tuple[Fraction, Fraction]]:
