@@ -62,7 +62,7 @@ def test_paper_scenario_refined(norm, expected):
     assert answer.peak <= coarse.peak <= answer.peak * (1 + 1e-4)
 
 
-@pytest.mark.parametrize("norm", [Euclidean(), LargestComponent()])
+@pytest.mark.parametrize("norm", [Euclidean(), pytest.param(LargestComponent(), marks=pytest.mark.slow)])
 def test_peak_scales_with_inertia_and_with_time(norm):
     rows = np.array([[3.05, 0.14, 0.05], [0.14, 2.66, 0.12], [0.05, 0.12, 2.18]])
     from intermit.models.rigid_body import RigidBody
