@@ -18,6 +18,11 @@ if TYPE_CHECKING:
     from ..study.case import Case
     from ..study.check import CheckStudy
 
+FUNCTION_NOT_LAW = (
+    "V' <= 0 and the conditions on lambda are about one storage function, not about the laws: "
+    "convergence does not rest on them and is proved."
+)
+
 
 def print_check(console: Console, studies: Sequence[CheckStudy]) -> None:
     """Print one check, or several side by side."""
@@ -79,12 +84,24 @@ def _not_proved(console: Console, mark: str, study: CheckStudy) -> None:
     from rich.text import Text
 
     console.print(f"\n{mark}Not proved", style="bold")
+    if _only_the_function_fails(study):
+        console.print(f"  {FUNCTION_NOT_LAW}")
     for (key, verdict, statement, *why), names in told.items():
         head = Text(f"{verdict} ", style=STYLES[styles[(key, verdict, statement, *why)].verdict])
         head.append(f"{key} ({', '.join(names)}): {statement}", style="not bold default")
         console.print(Padding(head, (0, 0, 0, 2)))
         for line in why:
             console.print(Padding(line, (0, 0, 0, 6)))
+
+
+def _only_the_function_fails(study: CheckStudy) -> bool:
+    """Whether some law converges for certain though its storage function may grow."""
+    for case in study.cases:
+        verdicts = {claim.key: claim.verdict for claim in case.claims}
+        refuted = verdicts.get("lyapunov.derivative") is Verdict.REFUTED
+        if refuted and verdicts.get("convergence") is Verdict.PROVED:
+            return True
+    return False
 
 
 def _why(claim: Claim) -> Iterable[str]:
@@ -105,9 +122,12 @@ def _simulated(console: Console, mark: str, study: CheckStudy) -> None:
         style="bold",
     )
     console.print(_run_table([(case.choice.label, entries) for case, entries in runs if entries]))
+    said: dict[str, list[str]] = {}
     for case, _ in runs:
         for remark in _remarks(case):
-            console.print(f"  {case.choice.label}: {remark}")
+            said.setdefault(remark, []).append(case.choice.label)
+    for remark, labels in said.items():
+        console.print(f"  {', '.join(labels)}: {remark}" if len(labels) < len(runs) else f"  {remark}")
 
 
 def _run_table(runs: Sequence[tuple[str, list[dict[str, object]]]]) -> Table:

@@ -22,6 +22,7 @@ from .keys import CLAIM_KEYS, order_of
 from .margins import convergence_margins, with_margins
 from .run import Run, Seen
 from .sampled import reference_floor, sample_law
+from .why_floor import floor_note
 
 Progress = Callable[[str, float], None]
 
@@ -91,19 +92,26 @@ def find(
     question = floor_question(scenario, law, seen, search=options.search)
     found = answer(question)
     claims |= {claim.key: claim for claim in found.claims}
+    if "R" not in (state.name for state in law.controller_states):
+        del claims["filter.floor"]
     _add_torque(claims, found)
     if options.margins and claims["convergence"].verdict is Verdict.PROVED:
         tell("margins of convergence", 0.6)
         quantities = tuple(convergence_margins(scenario, choice, partial(is_certified, question)))
         claims["convergence"] = with_margins(claims["convergence"], quantities)
     tell("samples of V'", 0.8)
-    floor = reference_floor(scenario, law, claims["filter.floor"], seen)
+    floor = reference_floor(scenario, law, claims.get("filter.floor"), seen)
     samples, why_not = sample_law(scenario, law, floor, lambda done: tell("samples of V'", 0.8 + 0.2 * done))
     if samples is not None:
         _add_samples(claims, samples)
     ordered = tuple(sorted(claims.values(), key=lambda claim: order_of(claim.key)))
     curves = certified_curves(found.floor, float(scenario.horizon)) if found.floor is not None else None
-    return Findings(ordered, floor, curves, samples, (f"V' was not sampled: {why_not}",) if why_not else ())
+    told = (
+        floor_note(scenario.schedule, found.converged),
+        f"V' was not sampled: {why_not}" if why_not else "",
+    )
+    notes = tuple(note for note in told if note)
+    return Findings(ordered, floor, curves, samples, notes)
 
 
 def decided_claims(scenario: Scenario, law: Law) -> tuple[Claim, ...]:
@@ -122,7 +130,8 @@ def _algebraic_claims(scenario: Scenario, law: Law) -> Iterator[Claim]:
 
 def _add_torque(claims: dict[str, Claim], found: FloorAnswer) -> None:
     """Without a limit to hold it against, the certified torque bound stands with the convergence."""
-    covered = claims["filter.floor"].verdict is Verdict.PROVED
+    floor = claims.get("filter.floor")
+    covered = floor is not None and floor.verdict is Verdict.PROVED
     if covered and found.torque is not None and "torque.limit" not in claims:
         convergence = claims["convergence"]
         quantities = (*convergence.quantities, *torque_quantities(found.torque))

@@ -61,7 +61,8 @@ def test_smaller_lambda_refutes_the_sign_of_v_but_not_the_convergence_of_the_law
     intermit: Run, write_scenario: Write, tmp_path: Path
 ) -> None:
     out = tmp_path / "found.json"
-    intermit("check", *QUICK, write_scenario(base="paper-smaller-lambda.toml"), "--json", out)
+    _, text, _ = intermit("check", *QUICK, write_scenario(base="paper-smaller-lambda.toml"), "--json", out)
+    assert "not about the laws" in text
     claims = claims_of(out)
     assert claims["lyapunov.derivative"]["verdict"] == "REFUTED"
     assert claims["lyapunov.derivative"]["counted"] is False
