@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import product
 from typing import Any
 
 import numpy as np
 
-from ..models.rigid_body import ExactMatrix, RigidBody
+from ..models.rigid_body import ExactMatrix, RigidBody, leading_minors
 from .document import Document
 from .errors import ScenarioError
 from .schema import SpacecraftTable
@@ -22,7 +23,7 @@ def build(
     ------
     ScenarioError
         If the inertia is not symmetric or not positive definite, or the tolerance is not a number
-        or a symmetric 3 by 3 table of numbers >= 0.
+        or a symmetric 3 by 3 table of numbers >= 0, or reaches an inertia that is none.
     """
     key = document.where("spacecraft.inertia")
     try:
@@ -37,7 +38,22 @@ def build(
             "no rigid body has it; the results stand for the equations as given",
         )
     tolerance = None if table.inertia_tolerance is None else _tolerance(table.inertia_tolerance, document)
+    if tolerance is not None and not _stays_definite(body.exact_inertia, tolerance):
+        where = document.where("spacecraft.inertia_tolerance")
+        raise ScenarioError(where, "reaches an inertia that is not positive definite: make it smaller")
     return body, tolerance, warnings
+
+
+def _stays_definite(inertia: ExactMatrix, tolerance: ExactMatrix) -> bool:
+    """Whether every inertia of the box is positive definite: decided at its vertices, since J is affine."""
+    places = [(i, j) for i in range(3) for j in range(i, 3) if tolerance[i][j] > 0]
+    for signs in product((-1, 1), repeat=len(places)):
+        vertex = [list(row) for row in inertia]
+        for (i, j), sign in zip(places, signs, strict=True):
+            vertex[i][j] = vertex[j][i] = inertia[i][j] + sign * tolerance[i][j]
+        if not all(minor > 0 for minor in leading_minors(vertex)):
+            return False
+    return True
 
 
 def _tolerance(value: Any, document: Document) -> ExactMatrix:

@@ -106,3 +106,10 @@ def test_a_law_that_proves_nothing_still_writes_what_is_certain(tmp_path, capsys
     assert code in (0, 3)
     assert (tmp_path / "pd.json").exists() == (code == 0)
     capsys.readouterr()
+
+
+def test_a_tolerance_that_reaches_no_inertia_is_bad_input(tmp_path, capsys):
+    toml = scenario(tmp_path, "wide", tolerance="inertia_tolerance = 3")
+    assert run(["certify", str(toml), "-o", str(tmp_path / "wide.json")]) == 2
+    assert "not positive definite" in capsys.readouterr().err
+    assert not (tmp_path / "wide.json").exists()

@@ -258,3 +258,8 @@ def test_a_counterexample_must_lie_in_the_domain():
     stated["state"]["controller"]["R"] = "2"
     stated["inertia"] = [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]
     assert not checker.check_text(json.dumps(document))[0].valid
+
+
+def test_a_box_that_reaches_no_inertia_has_no_threshold():
+    with pytest.raises(ValueError, match="not positive definite"):
+        sharp_threshold(cases.J1, tolerance=cases.tolerance("3"))

@@ -89,8 +89,16 @@ def sharp_certificate(
 def sharp_threshold(
     body: RigidBody, *, weight: Fraction = Fraction(1), tolerance: ExactRows | None = None
 ) -> Quantity:
-    """Enclosure of sqrt(a)/(2 sqrt(Jmin)), 1/s, by bisection on the exact condition."""
+    """Enclosure of sqrt(a)/(2 sqrt(Jmin)), 1/s, by bisection on the exact condition.
+
+    Raises
+    ------
+    ValueError
+        If the tolerance reaches an inertia that is not positive definite.
+    """
     bodies = list(vertices(body.exact_inertia, tolerance))
+    if any(negative_direction(J, strict=True) is not None for J in bodies):
+        raise ValueError("the tolerance reaches an inertia that is not positive definite")
 
     def holds(lam: Fraction) -> bool:
         return all(negative_direction(shifted(J, 4 * lam**2, weight), strict=False) is None for J in bodies)
