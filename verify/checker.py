@@ -255,7 +255,7 @@ def check_certificate(data: Node, certificate: Node) -> Finding:
         return Finding(name, True, tuple(KINDS[name](data, certificate)), "")
     except Invalid as error:
         return Finding(name, False, (), str(error))
-    except (ArithmeticError, LookupError, TypeError, ValueError, RecursionError) as error:
+    except (ArithmeticError, LookupError, TypeError, ValueError, MemoryError, RecursionError) as error:
         return Finding(name, False, (), f"malformed: {type(error).__name__}: {error}")
 
 
@@ -916,7 +916,7 @@ def _factor(ring: Ring, factors: Node, claim: Node) -> Poly:
     names = factors.keys()
     for name in names:
         power = factors[name].integer(-50, 50)
-        if name == "k_target" or (name == "R" and not floor and "R" in ring.index):
+        if name == "k_target" or (name == "R" and not floor and ring.index.get("R") in ring.invertible):
             base = ring.symbol(name)
         elif name == "s" and floor and power >= 0:
             base = ring.symbol("s")
@@ -1109,12 +1109,14 @@ class Profile:
         for c in reversed(self.shapes[i]):
             local = _times_affine(local, shift, slope)
             local[0] += c
-        n = len(local) - 1
-        controls = [
-            sum((Fraction(comb(i, j), comb(n, j)) * local[j] for j in range(i + 1)), Fraction(0))
-            for i in range(n + 1)
-        ]
-        return Form.of(controls)
+        return from_powers(local)
+
+
+def from_powers(p: Vector) -> Form:
+    """Return the polynomial on [0, 1] with these power coefficients, lowest first."""
+    n = len(p) - 1
+    terms = [[Fraction(comb(i, j), comb(n, j)) * p[j] for j in range(i + 1)] for i in range(n + 1)]
+    return Form.of([sum(row, Fraction(0)) for row in terms])
 
 
 def _times_affine(p: Vector, shift: Fraction, slope: Fraction) -> Vector:
@@ -1133,8 +1135,13 @@ def read_profile(data: Node) -> Profile:
     places = node["pieces"].vector(len(knots) - 1)
     require(all(x.denominator == 1 for x in places), "a piece must name a shape by its number")
     use = [int(x) for x in places]
-    require(knots[0] == 0 and all(a < b for a, b in pairwise(knots)), "knots must increase from 0")
     require(all(0 <= i < len(table) for i in use), "a piece names a shape that is not there")
+    require(knots[0] == 0 and all(a < b for a, b in pairwise(knots)), "knots must increase from 0")
+    require(bool(table), "there are no shapes")
+    require(
+        all(from_powers(row or [Fraction(0)]).is_nonnegative() for row in table),
+        "the gain is not proved >= 0",
+    )
     period = node["period"].number() if node.has("period") else None
     require(period is None or period == knots[-1], "a periodic profile must end at its period")
     return Profile(knots, [table[i] for i in use], period)
@@ -1293,6 +1300,11 @@ class FloorStep:
 Bounds = dict[str, Fraction]
 
 
+LARGEST_EXPONENT = 4096
+LARGEST_COUNT = 64
+"""Of a polynomial's power of 2, and of its coefficients: beyond, checking would take for ever."""
+
+
 def components(law: str, *, tail: bool) -> dict[str, int]:
     """Components with their side: -1 a lower bound, +1 an upper one."""
     if law == "persistence-filter":
@@ -1310,7 +1322,13 @@ def read_steps(place: Node, start: Fraction, sides: dict[str, int]) -> list[Floo
         require(stop > start, f"{node.path}: a step must end after it begins")
         x, ends = {}, {}
         for name in sides:
-            exponent, *mantissas = (int(v) for v in node["bounds"][name].vector())
+            numbers = node["bounds"][name].vector()
+            require(all(v.denominator == 1 for v in numbers), f"{node.path}: expected integers for {name}")
+            exponent, *mantissas = (int(v) for v in numbers)
+            require(
+                abs(exponent) <= LARGEST_EXPONENT and 0 < len(mantissas) <= LARGEST_COUNT,
+                f"{node.path}: the polynomial of {name} is out of range",
+            )
             unit = Fraction(2) ** exponent
             x[name] = Form.of([m * unit for m in mantissas])
             ends[name] = (mantissas[0] * unit, mantissas[-1] * unit)
@@ -1471,7 +1489,17 @@ def read_floor_data(data: Node, witness: Node) -> FloorData:
         require(is_positive_semidefinite(gap), "the greatest inertia is too small")
     zero = Fraction(0)
     gamma, k0, a = (values.get(n, zero) for n in ("gamma", "k0", "a"))
-    return FloorData(law, values["lambda"], values["R0"], gamma, k0, a, c, greatest, read_profile(data))
+    profile = read_profile(data)
+    require_continuous(profile)
+    return FloorData(law, values["lambda"], values["R0"], gamma, k0, a, c, greatest, profile)
+
+
+def require_continuous(profile: Profile) -> None:
+    """Check that g does not jump: the laws use g', and Omega would jump with g."""
+    starts = [shape[0] if shape else Fraction(0) for shape in profile.shapes]
+    ends = [sum(shape, Fraction(0)) for shape in profile.shapes]
+    following = [*starts[1:], Fraction(0) if profile.period is None else starts[0]]
+    require(ends == following, "the gain jumps at a knot")
 
 
 PI_HIGH = Fraction(31415926535897932384626433832795028842, 10**37)
@@ -1551,6 +1579,11 @@ def check_bin(d: FloorData, place: Node, s: Vector, y: Vector) -> FloorBin:
     return FloorBin(steps, tail, ratio, ends)
 
 
+def is_blind(step: FloorStep) -> bool:
+    """Whether a step gives up the bounds y and s: v and z alone bound rate and angle."""
+    return step.modes[:1] == ["blind"]
+
+
 def check_tail(d: FloorData, place: Node, start: Fraction, known: Bounds) -> tuple[list[FloorStep], Fraction]:
     """Check a part that repeats for ever: lower bounds end no lower, upper bounds no higher than they began.
 
@@ -1565,10 +1598,10 @@ def check_tail(d: FloorData, place: Node, start: Fraction, known: Bounds) -> tup
     steps = read_steps(place["steps"], start, sides)
     require(steps[-1].stop == start + period, "the repeating part must cover one period")
     require_loose(sides, known, steps[0], place.path)
-    blind = False
     for step in steps:
         check_step(d, step, tail=True)
-        blind = blind or step.modes[:1] == ["blind"]
+    blind = is_blind(steps[0])
+    require(all(is_blind(step) == blind for step in steps), "the angle is bounded on a part of a period only")
     decaying = {"y", "s", "v", "z", "Y", "Z"} - ({"y", "s"} if blind else set())
     for name, side in sides.items():
         first, last = steps[0].ends[name][0], steps[-1].ends[name][1]
@@ -1677,8 +1710,11 @@ def eighths(p: Form) -> list[tuple[Fraction, Fraction]]:
     return [(Fraction(min(part), unit), Fraction(max(part), unit)) for part in parts]
 
 
-def boxes(d: FloorData, step: FloorStep, limit: Fraction | None) -> list[Box]:
-    """Return the boxes of a step; `limit` bounds L over all later time, where the step repeats."""
+def boxes(d: FloorData, step: FloorStep, *, repeats: bool, limit: Fraction | None = None) -> list[Box]:
+    """Return the boxes of a step; `limit` bounds L over all later time, where the step repeats.
+
+    Where it does, S and y are scaled down period by period: they must not rest on bounds that are not.
+    """
     bounds = {name: eighths(p) for name, p in step.x.items()}
     length = (step.stop - step.start) / 8
     result = []
@@ -1691,8 +1727,11 @@ def boxes(d: FloorData, step: FloorStep, limit: Fraction | None) -> list[Box]:
         if d.law == "persistence-filter":
             require(low["r"] > 0 and low["K"] > 0, "the floor is not positive")
             share = d.R0 / low["r"]
-            S = min(high["s"] ** 2 if step.modes[0] == "angle" else Fraction(2), high["z"] ** 2 * share)
-            y = min(high["y"], high["v"] * root_above(share))
+            S, y = high["z"] ** 2 * share, high["v"] * root_above(share)
+            if not is_blind(step):
+                S, y = min(S, high["s"] ** 2), min(y, high["y"])
+            elif not repeats:
+                S, y = min(S, Fraction(2)), min(y, high["y"])
             result.append(Box(start + length, S, y, 1 / low["K"], low["K"], 1 / low["r"], *shared))
         else:
             top = high["L"] if limit is None else limit
@@ -1711,12 +1750,12 @@ Boxes = tuple[list[Box], list[Box]]
 
 def all_boxes(d: FloorData, proved: FloorBin) -> Boxes:
     """Boxes of a bin's transient, and of the first period of its repeating part."""
-    transient = [box for step in proved.steps for box in boxes(d, step, None)]
+    transient = [box for step in proved.steps for box in boxes(d, step, repeats=False)]
     limit = None
     if proved.tail and "L" in proved.tail[0].ends:
         first, last = proved.tail[0].ends["L"][0], proved.tail[-1].ends["L"][1]
         limit = first + max(last - first, Fraction(0)) / (1 - proved.ratio**2)
-    return transient, [box for step in proved.tail for box in boxes(d, step, limit)]
+    return transient, [box for step in proved.tail for box in boxes(d, step, repeats=True, limit=limit)]
 
 
 def rate_above(d: FloorData, box: Box, bv: Fraction) -> Fraction:
@@ -1741,6 +1780,7 @@ def check_settling(claim: Node, bins: list[FloorBin], covered: list[Boxes], d: F
         period = d.profile.period
         assert period is not None
         n = max(int((time - proved.tail[0].start) // period), 0)
+        require(n <= 10**5, "the settling time is out of range")
         for periods in (n, n + 1):
             scale = proved.ratio**periods
             for box in repeated:
@@ -1829,6 +1869,7 @@ def monodromy(A: Matrix, F: Matrix, profile: Profile) -> tuple[Matrix, Fraction]
     for start, stop in pairwise(profile.knots):
         size = (stop - start) * (norm(A) + norm(F))
         count = 1
+        require(size < 10**5, "a piece of the schedule is too long for its plant")
         while count < 2 * size:
             count *= 2
         for i in range(count):
@@ -2343,14 +2384,19 @@ def check_peak_lower_bound(data: Node, certificate: Node) -> list[str]:
 # --- command line ------------------------------------------------------------------------------
 
 
+def printable(text: str) -> str:
+    """Escape everything but plain characters: names come from the file, and must not pass for verdicts."""
+    return "".join(c if " " <= c <= "~" else c.encode("unicode_escape").decode() for c in text)
+
+
 def report(findings: list[Finding]) -> str:
     """Return the findings as text."""
     lines: list[str] = []
     for finding in findings:
-        lines.append(f"{'VALID' if finding.valid else 'INVALID'}  {finding.kind}")
-        lines += [f"    {line}" for line in finding.claim]
+        lines.append(f"{'VALID' if finding.valid else 'INVALID'}  {printable(finding.kind)}")
+        lines += [f"    {printable(line)}" for line in finding.claim]
         if finding.reason:
-            lines.append(f"    reason: {finding.reason}")
+            lines.append(f"    reason: {printable(finding.reason)}")
     good = sum(finding.valid for finding in findings)
     lines.append(f"{good} of {len(findings)} valid")
     return "\n".join(lines) + "\n"

@@ -83,7 +83,8 @@ def analyse_convergence(floor: Floor, *, attitude: float, rate: float) -> Conver
         ratio=max((max(t.ratios.values(), default=0.0) for t in complete), default=1.0),
         envelope_start=max((t.start for t in complete), default=Fraction(0)),
         settling=None if any(t is None for t in times) else max(t for t in times if t is not None),
-        largest_angle=float(2 * np.arccos(max(1.0 - gaps * OUTWARD, -1.0)) * OUTWARD),
+        # 2 acos(1 - S) = 4 asin(sqrt(S/2)), which loses no digits where S is small
+        largest_angle=float(4 * np.arcsin(min(np.sqrt(gaps / 2) * OUTWARD, 1.0)) * OUTWARD),
         largest_rate=max(r.rate for row in reaches for r in row),
     )
 

@@ -103,19 +103,24 @@ class Floor:
 
 
 def comparison_system(law: Law, bounds: BodyBounds) -> LawComparison | None:
-    """Return the comparison system of a law, or None for laws (or lambda, R(0) <= 0) that have none."""
-    if law.parameters.get("lambda", 0) <= 0 or law.parameters.get("R0", 0) <= 0:
+    """Return the comparison system of a law, or None for laws that have none.
+
+    None too for parameters the inequalities do not cover: lambda, R(0) or a <= 0, gamma or k(0) < 0.
+    """
+    given, c = law.parameters, bounds.coupling
+    if any(given.get(name, 0) <= 0 for name in ("lambda", "R0")):
         return None
-    c = bounds.coupling
     if isinstance(law, PersistenceFilter):
-        return PersistenceSystem(decay=law.lambda_, initial_filter=law.R0, coupling=c)
+        return PersistenceSystem(decay=given["lambda"], initial_filter=given["R0"], coupling=c)
     if isinstance(law, AdaptiveScaling):
+        if given["a"] <= 0 or given["gamma"] < 0 or given["k0"] < 0:
+            return None
         return AdaptiveSystem(
-            decay=law.lambda_,
-            initial_filter=law.R0,
-            learning_rate=law.gamma,
-            initial_gain=law.k0,
-            weight=law.a,
+            decay=given["lambda"],
+            initial_filter=given["R0"],
+            learning_rate=given["gamma"],
+            initial_gain=given["k0"],
+            weight=given["a"],
             coupling=c,
         )
     return None

@@ -109,8 +109,9 @@ def convergence_claim(facts: FloorFacts, found: Convergence | None, attitude: fl
         return _undecided("convergence", title, general, reason, step)
     period = floor.schedule.period
     statement = (
-        f"from every start with {floor.initial.description}, sqrt(1 - b0) and |Omega|_J shrink by a factor "
-        f"{_up(found.ratio)} every {float(period):g} s from t = {float(found.envelope_start):g} s on"
+        f"from every start with {floor.initial.description}, the bounds of sqrt(1 - b0) and |Omega|_J "
+        f"shrink by a factor {_up(found.ratio)} every {float(period):g} s "
+        f"from t = {float(found.envelope_start):g} s on"
     )
     if found.settling is not None:
         statement += (

@@ -77,12 +77,13 @@ class PersistenceSystem(LawComparison):
         return exp(-self._lam * period)
 
     def bounds(self, low: dict[str, Array], high: dict[str, Array]) -> dict[str, Array]:
-        """Take the better of the two bounds of angle and rate."""
+        """Take the better of the two bounds of angle and rate; s = inf asks for the second alone."""
         r = np.maximum(low["r"], 0.0)
         share = self._R0 / r * ROUND_UP
-        angle = np.where(high["s"] < NO_BOUND, high["s"] ** 2, 2.0)
+        s = high["s"]
+        angle = np.where((s < NO_BOUND) | np.isinf(s), s**2, 2.0)
         return {
-            "cosine_gap": np.minimum(np.minimum(angle, high["z"] ** 2 * share), 2.0) * ROUND_UP,
+            "cosine_gap": np.minimum(angle, high["z"] ** 2 * share) * ROUND_UP,
             "weighted_rate": np.minimum(high["y"], high["v"] * np.sqrt(share)) * ROUND_UP,
             "filter_low": r,
             "filter_high": ROUND_UP / low["K"],

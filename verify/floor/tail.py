@@ -61,12 +61,15 @@ class Tail:
         Component name to its ratio per period, < 1; components not listed repeat unchanged.
     limits : mapping
         Component name to its bound over all later time, where it neither decays nor repeats.
+    given_up : tuple of str
+        Components that hold over the first period only, and are not needed.
     """
 
     start: Fraction
     steps: tuple[Step, ...]
     ratios: Mapping[str, float]
     limits: Mapping[str, float]
+    given_up: tuple[str, ...] = ()
 
 
 def find_tail(
@@ -87,7 +90,9 @@ def find_tail(
         moved = _loosened(system, values, end, system.contraction(float(schedule.period)))
         if moved is None:
             first = dict(zip(system.names, values, strict=True))
-            return Tail(start, tuple(steps), ratios, system.limits(first, end, ratios))
+            limits = system.limits(first, end, ratios)
+            given_up = tuple(name for name in system.free if name not in limits)
+            return Tail(start, tuple(steps), ratios, limits, given_up)
         values = moved
     return None
 

@@ -114,7 +114,7 @@ def _coefficient(law: object, c: _Columns) -> tuple[Array, Array]:
     """Bounds of q; each term's interval, added, then widened by its rounding."""
     g, low, high = c.g, c.low, c.high
     slope = [-4 * s * k for s in (c.slope_low, c.slope_high) for k in (low, high)]
-    b0_low = 1.0 - c.S
+    b0_low = 1.0 - np.minimum(c.S, 2.0)
     square = 2 * g**3 * high**2
     terms = [(np.minimum.reduce(slope), np.maximum.reduce(slope))]
     if isinstance(law, PersistenceFilter):

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, cached_property, lru_cache
 from itertools import chain
-from math import comb
+from math import comb, inf
 from typing import final
 
 import numpy as np
@@ -36,7 +36,7 @@ class Box:
     Attributes
     ----------
     start, stop : time, s
-    cosine_gap : upper bound of S = 1 - b0
+    cosine_gap : upper bound of S = 1 - b0; it may exceed 2 in a tail, where it is scaled down
     weighted_rate : upper bound of y = |Omega|_J, sqrt(kg m^2) rad/s
     filter_low, filter_high : bounds of R, s
     gain_low, gain_high : bounds of kappa, 1/s
@@ -120,10 +120,14 @@ class Witness:
 
     @cached_property
     def tail_boxes(self) -> tuple[Box, ...]:
-        """Boxes of the tail's first period; they hold in every later period too."""
+        """Boxes of the tail's first period; they hold in every later period too.
+
+        Angle and rate may be scaled down from period to period, so that bounds which do not shrink
+        (of s and y, once s is given up) must not enter them.
+        """
         if self.tail is None:
             return ()
-        fixed = self.tail.limits
+        fixed = {**self.tail.limits, **dict.fromkeys(self.tail.given_up, inf)}
         return tuple(chain.from_iterable(step_boxes(self.system, s, fixed) for s in self.tail.steps))
 
 
