@@ -66,7 +66,7 @@ def test_the_largest_angle_holds_for_tiny_sets(exponent):
     initial = InitialSet.from_bounds(bounds, max_angle_deg=degrees)
     floor = certify_floor(PERSISTENCE, bounds, paper_schedule(), initial, options=FloorOptions(slack=1e-3))
     angle = analyse_convergence(floor, attitude=0.01, rate=0.01).largest_angle
-    assert np.radians(float(degrees)) <= angle <= np.radians(float(degrees)) * (1 + 1e-9)
+    assert np.radians(float(degrees)) <= angle <= np.radians(float(degrees)) * (1 + 1e-3)  # the slack
 
 
 def test_parameters_that_the_inequalities_do_not_cover():
