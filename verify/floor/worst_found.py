@@ -158,6 +158,12 @@ class _Shape:
         q = np.hstack([b0[:, None], bv])
         return np.hstack([q / np.linalg.norm(q, axis=1, keepdims=True), w])
 
+    def inside(self, states: Array) -> NDArray[np.bool_]:
+        """Whether |Omega|_J is within the set: holding |w| to its own bound can push it out."""
+        Omega = states[:, 4:] + 2 * self._gain_term() * states[:, 1:4]
+        y = np.sqrt(np.einsum("ni,ij,nj->n", Omega, self.body.inertia, Omega))
+        return np.asarray((y <= self.initial.y_high) & (y >= self.initial.y_low * INSIDE))
+
     def _gain_term(self) -> float:
         loop = close_loop(self.law)
         if loop.control.gain is None:
@@ -168,16 +174,18 @@ class _Shape:
         return float(self.schedule.gain(0.0)) ** 2 * kappa
 
     def run(self, points: Array, horizon: Fraction) -> tuple[Array, Array]:
-        """Least R of each point and when."""
+        """Least R of each point and when; inf for a point whose state is not in the set."""
+        states = self.states(points)
         result = simulate_ensemble(
             self.law,
             self.body,
             self.schedule,
-            self.states(points),
+            states,
             horizon=horizon,
             metrics=MetricOptions(),
             tolerances=SEARCHING,
         )
         assert result.metrics is not None
         values = result.metrics.filter_minimum
-        return np.where(np.isnan(values), np.inf, values), result.metrics.filter_minimum_time
+        bad = np.isnan(values) | ~self.inside(states)
+        return np.where(bad, np.inf, values), result.metrics.filter_minimum_time
