@@ -76,7 +76,7 @@ class Falsification:
 
     Attributes
     ----------
-    worst : largest V'/W found, 1/s, in floats
+    worst : largest V'/W found, 1/s, in floats; violations that exact evaluation denies are left out
     refutation : exact state with V' > 0, or None
     evaluations : how often V' was evaluated
     reason : why a violation seen in floats has no exact witness, if so
@@ -123,14 +123,16 @@ def falsify(
     for coefficients, length in _pieces(schedule):
         search.on_piece(coefficients, length)
     search.found.sort(key=lambda item: -item[0])
-    reason = ""
+    reason, spurious = "", 0
     for value, z, coefficients in search.found:
         if value <= ROUNDING:
             break
         refutation, reason = search.exact_refutation(z, coefficients)
         if refutation is not None:
-            return Falsification(search.found[0][0], refutation, search.evaluations)
-    return Falsification(search.found[0][0], None, search.evaluations, reason)
+            return Falsification(value, refutation, search.evaluations)
+        spurious += 1  # cancellation in floats: no violation at the exact state
+    values = [value for value, _, _ in search.found[spurious:]]
+    return Falsification(values[0] if values else search.found[0][0], None, search.evaluations, reason)
 
 
 def _pieces(schedule: Schedule | None) -> list[tuple[tuple[Fraction, ...], Fraction]]:
