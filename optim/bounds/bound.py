@@ -106,7 +106,7 @@ def _by_invariant_set(problem: TransferProblem, options: PathOptions) -> list[Na
     names = ("momentum in the invariant set", "invariant set")
     result = _momentum_and_path(problem, momenta, options, names)
     at_rest = problem.starts_at_rest and not problem.terminal.rate
-    if isinstance(problem.norm, LargestComponent) and at_rest:
+    if isinstance(problem.norm, LargestComponent) and at_rest and options.components:
         result += _by_components(problem, momenta, options, max(bound.exact for bound in result))
     return result
 

@@ -56,13 +56,13 @@ class CutConstraint(RateConstraint):
         self._cuts = np.concatenate([self._cuts, np.tile(self._first, len(fresh))])
         self._known = len(features)
         coefficients = np.zeros(len(objective))
-        for _ in range(6):
+        for _ in range(3):
             rows = np.einsum("nmi,ni->nm", features[self._points], self._boundary[self._cuts])
             coefficients = maximise_linear(objective, rows)
             loose = rows @ coefficients < 0.7
             rates = np.einsum("nmi,m->ni", features, coefficients) @ self._boundary.T
             highest = rates.argmax(axis=1)
-            over = np.flatnonzero(rates.max(axis=1) > 1 + 5e-4)
+            over = np.flatnonzero(rates.max(axis=1) > 1 + 1e-3)
             if len(rows) > 4 * len(features):
                 self._points, self._cuts = self._points[~loose], self._cuts[~loose]
             if not len(over):

@@ -34,12 +34,15 @@ class PathOptions:
     trial, share : float
         Bound by components: the trial peak over the bound known, and where between 1 and B the
         box is put. Any values are valid.
+    components : bool
+        Whether to compute that bound: it needs a potential for each window profile.
     """
 
     degree: int | None = None
     tolerance: float = 8e-4
     trial: float = 1.12
     share: float = 0.6
+    components: bool = True
 
     def __post_init__(self) -> None:
         if self.degree is not None and not 1 <= self.degree <= 9:
@@ -53,7 +56,7 @@ class PathOptions:
         """Degree that pays for a region of that arc sum (rad)."""
         if self.degree is not None:
             return self.degree
-        return 5 if arc_sum < 1.6 else 6 if arc_sum < 2.3 else 7
+        return 5 if arc_sum < 1.6 else 6 if arc_sum < 2.5 else 7
 
 
 @final
