@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import signal
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing import get_context
 from typing import final
@@ -17,6 +19,8 @@ Progress = Callable[[str, float], None]
 
 START = 0.1
 """Share of a check that is done before the jobs begin."""
+THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+"""What a BLAS reads when it is loaded; a user's own setting is kept."""
 
 
 def find_all(jobs: Sequence[Job], workers: int, tell: Progress) -> list[Findings]:
@@ -30,12 +34,24 @@ def find_all(jobs: Sequence[Job], workers: int, tell: Progress) -> list[Findings
 def _in_processes(jobs: Sequence[Job], workers: int, tell: Progress) -> list[Findings]:
     """Fresh processes (nothing is forked that holds a thread); leaving the block ends them."""
     findings = []
-    with get_context("spawn").Pool(workers, initializer=_ignore_interrupt) as pool:
+    with _one_thread_each(), get_context("spawn").Pool(workers, initializer=_ignore_interrupt) as pool:
         waiting = [pool.apply_async(find, job) for job in jobs]
         for number, (job, result) in enumerate(zip(jobs, waiting, strict=True)):
             tell(f"{job[1].label}: proofs and samples", START + (1 - START) * number / len(jobs))
             findings.append(result.get())
     return findings
+
+
+@contextmanager
+def _one_thread_each() -> Iterator[None]:
+    """Start new processes with one BLAS thread: on small matrices more only get in each other's way."""
+    missing = [name for name in THREADS if name not in os.environ]
+    os.environ.update(dict.fromkeys(missing, "1"))
+    try:
+        yield
+    finally:
+        for name in missing:
+            del os.environ[name]
 
 
 def _ignore_interrupt() -> None:
