@@ -13,10 +13,6 @@ from .walk import Program, check_arguments
 
 Array = NDArray[np.float64]
 
-BLOCK = 6144
-"""Samples a block: a program's live buffers (some thirty of 48 kB) stay in the second-level cache.
-No power of two: buffers a power of two apart fight for the same lines of the cache."""
-
 
 class BlockFunction(ABC):
     """A program over samples kept as a structure of arrays, one row a quantity.
@@ -30,7 +26,7 @@ class BlockFunction(ABC):
         Samples a block.
     """
 
-    def __init__(self, program: Program, *, uniform: Sequence[int] = (), block: int = BLOCK) -> None:
+    def __init__(self, program: Program, *, uniform: Sequence[int] = (), block: int) -> None:
         if block < 1:
             raise ValueError(f"block must be at least 1 sample, received {block}")
         unknown = sorted(set(uniform) - set(range(len(program.argument_sizes))))

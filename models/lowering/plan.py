@@ -121,7 +121,8 @@ class Plan:
         once = [f"def once({', '.join(f'a{i}' for i in self.arguments)}):"]
         once += [f"    {line}" for line in self.once] + [f"    return ({known})"]
         body = ["def body(rows, results, buffers, known, start, stop):", f"    ({known}) = known"]
-        body += [f"    b{i} = buffers[{i}]" for i in range(self.buffer_count)]
+        if self.buffer_count:
+            body.append(f"    ({''.join(f'b{i}, ' for i in range(self.buffer_count))}) = buffers")
         used = {o for s in program.steps for o in s.operands} | {v for row in program.results for v in row}
         for v, (a, e) in program.inputs.items():
             if v in used and self.text[v].startswith("x"):

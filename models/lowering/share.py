@@ -1,12 +1,15 @@
-"""Common subexpressions computed once, values nobody uses dropped.
+"""Common subexpressions computed once, values nobody uses dropped, divisions by 2, 4, ... multiplied.
 
 The model is written for the reader, so J w, J bv or g^2 kappa occur in several terms. Sharing
 them changes no rounding: a shared value is the same operation on the same operands (+ and * are
-commutative in floating point too).
+commutative in floating point too). Neither does x / 2 as x * 0.5: both round the same number, and
+a product is many times cheaper than a quotient.
 """
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from dataclasses import replace
 
 from .walk import Program, Step
@@ -16,6 +19,7 @@ COMMUTATIVE = frozenset({"add", "mul", "eq", "ne", "and", "or"})
 
 def shared(program: Program) -> Program:
     """The same program with every distinct operation carried out once, bit-identical."""
+    program = _without_power_of_two_divisors(program)
     same: dict[int, int] = {}
     constants: dict[str, int] = {}
     for v, c in program.constants.items():
@@ -42,6 +46,30 @@ def shared(program: Program) -> Program:
         steps=tuple(step for step in steps if step.result in kept),
         results=results,
     )
+
+
+def _without_power_of_two_divisors(program: Program) -> Program:
+    """Each x / c with c a power of two as x * (1 / c): the same number, rounded once."""
+    constants, count = dict(program.constants), program.value_count
+    reciprocals: dict[int, int] = {}
+    steps: list[Step] = []
+    for step in program.steps:
+        if step.operation == "div" and _is_power_of_two(program.constants, step.operands[1]):
+            divisor = step.operands[1]
+            if divisor not in reciprocals:
+                reciprocals[divisor], constants[count] = count, 1.0 / constants[divisor]
+                count += 1
+            step = Step("mul", step.result, (step.operands[0], reciprocals[divisor]))
+        steps.append(step)
+    return replace(program, constants=constants, steps=tuple(steps), value_count=count)
+
+
+def _is_power_of_two(constants: Mapping[int, float], value: int) -> bool:
+    """Whether a value is a constant +-2^k whose reciprocal is a normal number too."""
+    if value not in constants:
+        return False
+    mantissa, exponent = math.frexp(constants[value])
+    return abs(mantissa) == 0.5 and -1020 < exponent < 1020
 
 
 def _needed(steps: list[Step], results: tuple[tuple[int | None, ...], ...]) -> set[int]:

@@ -71,6 +71,34 @@ def test_sharing_saves_operations_and_keeps_every_bit():
     assert np.array_equal(*both)
 
 
+def test_division_by_a_power_of_two_becomes_a_product_and_keeps_every_bit():
+    x = ca.SX.sym("x", 3)
+    function = ca.Function("f", [x], [x / 4, x / -0.5, x / 3, x / 5e-324, x / 2.0**1023])
+    program = shared(walk(function))
+    # by 3, and where 1/c is no normal number
+    assert sum(step.operation == "div" for step in program.steps) == 9
+    edges = [0.0, -0.0, 5e-324, -3e-323, 2.2e-308, 1.7e308, np.inf, -np.inf, 1 / 3]
+    points = np.array([edges, edges[::-1], np.random.default_rng(5).normal(size=9) * 1e-308])
+    for found, truth in zip(ArrayFunction(program)(points), function(points), strict=True):
+        assert found.tobytes() == np.ascontiguousarray(np.array(truth)).tobytes()
+
+
+def test_the_block_keeps_the_buffers_in_the_cache_and_no_result_depends_on_it():
+    loop = close_loop(LAWS[0])
+    program = shared(walk(loop.function("rates", loop.state_rate)))
+    chosen = ArrayFunction(program, uniform=(2, 3))
+    assert chosen.block % 64 == 0
+    assert chosen.block * chosen.buffer_count * 8 <= 1 << 20
+    arguments = samples(loop, 2 * chosen.block + 5)
+    expected = chosen(*arguments)[0]
+    for block in (1, 7, 1000, 10**6):
+        few = [a[:, :40] if i < 2 else a for i, a in enumerate(arguments)] if block == 1 else arguments
+        found = ArrayFunction(program, uniform=(2, 3), block=block)(*few)[0]
+        assert np.array_equal(found, expected[:, : found.shape[1]])
+    with pytest.raises(ValueError, match="at least 1 sample"):
+        ArrayFunction(program, block=0)
+
+
 def test_exact_rationals_go_through_the_same_walk():
     x = ca.SX.sym("x", 2)
     program = walk(ca.Function("f", [x], [x[0] ** 2 / x[1] - 0.5, 2 * x[0] * x[1]]))
