@@ -105,13 +105,13 @@ def rational_quaternion(quaternion: Sequence[float], *, denominator: int = 10**6
         return (Fraction(1 if b0 >= 0 else -1), Fraction(0), Fraction(0), Fraction(0))
     direction = rational_direction([x / length for x in vector], denominator=denominator)
     tangent = math.tan(math.atan2(length, b0) / 2)
-    t = _near(tangent, denominator) if abs(tangent) < 1e8 else Fraction(10**8)
+    t = near(tangent, denominator) if abs(tangent) < 1e8 else Fraction(10**8)
     cosine, sine = (1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)
     return (cosine, *(sine * x for x in direction))
 
 
-def _near(x: float, denominator: int) -> Fraction:
-    """Rational near x, as fine relative to x as the denominator allows for numbers near 1."""
+def near(x: float, denominator: int) -> Fraction:
+    """Return a rational near x, as fine relative to x as the denominator allows for numbers near 1."""
     scale = 10 ** max(0, -math.floor(math.log10(abs(x)))) if x else 1
     return Fraction(x * scale).limit_denominator(denominator) / scale
 
@@ -121,7 +121,7 @@ def rational_direction(vector: Sequence[float], *, denominator: int = 10**6) -> 
     pole = max(range(3), key=lambda i: abs(vector[i]))
     sign = 1 if vector[pole] >= 0 else -1
     others = [i for i in range(3) if i != pole]
-    p = [_near(vector[i] / (1 + abs(vector[pole])), denominator) for i in others]
+    p = [near(vector[i] / (1 + abs(vector[pole])), denominator) for i in others]
     square = p[0] * p[0] + p[1] * p[1]
     result = [Fraction(0)] * 3
     result[pole] = sign * (1 - square) / (1 + square)

@@ -1,9 +1,9 @@
 """Falsifier: a multi-start gradient search for a state and a schedule phase with V' > 0.
 
-Coordinates in which V'/W is smooth down to the equilibrium: half the error angle theta on a
-logarithmic scale, its axis, Omega/theta, controller states, and the time within one piece of the
-schedule. A violation found in floats is moved to rationals and evaluated again exactly; only then
-is it one. Finding none proves nothing.
+Coordinates in which V'/W is smooth down to the equilibrium and of order one for every body: half
+the error angle theta on a logarithmic scale, its axis, J^(1/2) Omega/theta, controller states, and
+the time within one piece of the schedule. A violation found in floats is moved to rationals and
+evaluated again exactly; only then is it one. Finding none proves nothing.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ from .exact_states import (
     ExactState,
     IrrationalError,
     loop_arguments,
+    near,
     program_of,
     rational_quaternion,
 )
@@ -41,7 +42,7 @@ SMALLEST_ANGLE = 1e-3
 ROUNDING = 1e-12
 """Values of V'/W (1/s) below this are rounding."""
 LARGEST_RATIO = 20.0
-"""Largest component of Omega over half the error angle, 1/s."""
+"""Largest component of J^(1/2) Omega over half the error angle, sqrt(kg m^2)/s."""
 FLOOR_TARGET = Fraction(1)
 """k* = 1/R_min of the search, 1/s; R is searched above R_min."""
 
@@ -151,6 +152,7 @@ class _Search:
         self._states = [s.name for s in candidate.loop.law.controller_states]
         self._signals = candidate.loop.time.shape[0] - 2
         self._random = np.random.default_rng(options.seed)
+        self._root = inverse_root(body)
         self._objective, self._gradient = _objective(candidate, body, weight)
         self.evaluations = 0
         self.found: list[tuple[float, Array, tuple[Fraction, ...]]] = []
@@ -166,19 +168,24 @@ class _Search:
         values = np.array([float(self._objective(p, padded)) for p in points])
         self.evaluations += len(points)
         order = np.argsort(values)
+        # the search stops by the size of its steps and slopes: rates may be 1e-3 or 1e3 1/s
+        size = float(np.median(np.abs(values))) or 1.0
         for start in points[order[: self._options.starts]]:
             result = minimize(
-                lambda z: (float(self._objective(z, padded)), np.asarray(self._gradient(z, padded)).ravel()),
+                lambda z: (
+                    float(self._objective(z, padded)) / size,
+                    np.asarray(self._gradient(z, padded)).ravel() / size,
+                ),
                 start,
                 jac=True,
                 method="L-BFGS-B",
                 bounds=list(zip(low, high, strict=True)),
             )
             self.evaluations += int(result.nfev)
-            self.found.append((-float(result.fun), np.asarray(result.x), coefficients))
+            self.found.append((-float(result.fun) * size, np.asarray(result.x), coefficients))
 
     def _bounds(self, length: float) -> tuple[Array, Array]:
-        """Box of (log theta, axis (3), Omega/theta (3), controller states, signals, time)."""
+        """Box of (log theta, axis (3), J^(1/2) Omega/theta (3), controller states, signals, time)."""
         largest = self._options.largest
         low = [math.log(SMALLEST_ANGLE), -1, -1, -1, *[-LARGEST_RATIO] * 3]
         high = [math.log(math.pi), 1, 1, 1, *[LARGEST_RATIO] * 3]
@@ -206,7 +213,7 @@ class _Search:
         theta = math.exp(z[0])
         axis = z[1:4] / np.linalg.norm(z[1:4])
         quaternion = rational_quaternion([math.cos(theta), *(math.sin(theta) * axis)])
-        omega = [Fraction(float(x)).limit_denominator(10**9) for x in theta * z[4:7]]
+        omega = [near(float(x), 10**9) for x in theta * (self._root @ z[4:7])]
         end = 7 + len(self._states)
         controller = {
             name: Fraction(float(x)).limit_denominator(10**6)
@@ -228,6 +235,13 @@ class _Search:
         program = program_of(loop, [], [self._candidate.shift])
         body = [Fraction(0)] * 12  # the shift does not use the inertia
         return evaluate(program, EXACT, loop_arguments(loop, state, body), Fraction)[0]
+
+
+def inverse_root(body: RigidBody) -> Array:
+    """J^(-1/2) in floats, (3, 3)."""
+    values, vectors = np.linalg.eigh(np.asarray(body.inertia))
+    root: Array = (vectors / np.sqrt(values)) @ vectors.T
+    return root
 
 
 DEGREE = 7
@@ -254,7 +268,7 @@ def _objective(candidate: Candidate, body: RigidBody, weight: Fraction) -> tuple
             symbols, values = [*symbols, symbol], [*values, ca.SX(float(number))]
     symbols = [*symbols, loop.parameters, loop.body]
     values = [*values, ca.SX(loop.parameter_values()), ca.SX(body_values(body))]
-    w = theta * z[4:7] - ca.SX(candidate.shift)
+    w = theta * ca.mtimes(ca.DM(inverse_root(body)), z[4:7]) - ca.SX(candidate.shift)
     rate, reference = ca.substitute([ca.SX(rate), reference], [loop.plant.w], [w])
     rate, reference = ca.substitute([rate, reference], symbols, values)
     # the small terms keep the ratio finite where W vanishes; they lower it by less than 1e-4 of itself
