@@ -40,7 +40,6 @@ from intermit.optim.peak import (
     fly_again,
     guess,
     mesh,
-    nlp,
     propagate,
     scaling,
     shooting,
@@ -69,7 +68,6 @@ def forget() -> None:
     """Drop everything cached, so that each round builds from nothing."""
     propagate.step_functions.cache_clear()
     curvature._step_hessian.cache_clear()
-    nlp._cell_function.cache_clear()
 
 
 def ours(solver: Any, norm: Norm, horizon: str = "51.22") -> tuple[float, np.ndarray]:
