@@ -40,7 +40,7 @@ quick: install
 	$(BIN)/pytest tests -m "not soak and not slow" -n 2 --dist loadfile
 
 $(VENV)/lint-ready: $(VENV)/ready
-	$(BIN)/python -m pip install --quiet "ruff>=0.6" "mypy>=1.10" "import-linter>=2.0"
+	$(BIN)/python -m pip install --quiet "ruff>=0.6" "mypy>=1.10" "import-linter>=2.6"
 	touch $@
 
 lint: install $(VENV)/lint-ready

@@ -9,7 +9,7 @@ from ..models.schedule import Schedule
 from ..scenario import Scenario
 from ..verify.floor.certify import FloorOptions, certify_floor
 from ..verify.floor.claims import reaches_far_enough
-from ..verify.floor.study import FloorQuestion
+from ..verify.floor.question import FloorQuestion
 from ..verify.floor.worst_found import Search
 from .run import Seen
 

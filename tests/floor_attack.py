@@ -12,7 +12,8 @@ from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import Hermite, Ramps, Window, build_schedule
 from intermit.verify.floor.certify import FloorOptions
 from intermit.verify.floor.comparison import BodyBounds
-from intermit.verify.floor.study import FloorQuestion, answer
+from intermit.verify.floor.question import FloorQuestion
+from intermit.verify.floor.study import answer
 from intermit.verify.floor.worst_found import Search, _Shape
 
 TOLERANCE = 1e-7

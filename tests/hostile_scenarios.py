@@ -20,7 +20,8 @@ from intermit.models.schedule.measured import ThrustSample, measured_schedule
 from intermit.models.schedule.polynomial import compose_affine
 from intermit.verify.floor.certify import FloorOptions
 from intermit.verify.floor.comparison import BodyBounds
-from intermit.verify.floor.study import FloorQuestion, answer
+from intermit.verify.floor.question import FloorQuestion
+from intermit.verify.floor.study import answer
 from intermit.verify.floor.worst_found import _Shape
 
 

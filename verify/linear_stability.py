@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ..models.linear import LinearPlant
 from . import checker
 from .certificates.format import Certificate, certificate_text
-from .floor.certificate import schedule_data
+from .certificates.schedule import schedule_data
 from .rational_quantity import rational_quantity
 from .verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict, Witness
 

@@ -9,8 +9,9 @@ from typing import final
 from ...models.laws import Law
 from ...verify.floor.certify import certify_floor
 from ...verify.floor.comparison import BodyBounds
+from ...verify.floor.question import FloorQuestion, initial_gain_term
 from ...verify.floor.sets import InitialSet
-from ...verify.floor.study import FloorQuestion, answer, initial_gain_term
+from ...verify.floor.study import answer
 from ...verify.verdict import Verdict
 from ..comparison.measure import Task
 

@@ -15,8 +15,9 @@ from intermit.verify.enclosure.stepping import Stepper
 from intermit.verify.floor.certificate import _steps
 from intermit.verify.floor.certify import FloorOptions
 from intermit.verify.floor.persistence import PersistenceSystem
+from intermit.verify.floor.question import FloorQuestion
 from intermit.verify.floor.sets import InitialSet
-from intermit.verify.floor.study import FloorQuestion, answer
+from intermit.verify.floor.study import answer
 from problems import J1, paper_schedule
 
 QUESTION = FloorQuestion(

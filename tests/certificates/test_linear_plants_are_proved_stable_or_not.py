@@ -10,7 +10,7 @@ from intermit.models.linear import LinearPlant
 from intermit.models.schedule import Hermite, Window, build_schedule
 from intermit.verify import checker
 from intermit.verify.certificates import as_text, certificate_text
-from intermit.verify.floor.certificate import schedule_data
+from intermit.verify.certificates.schedule import schedule_data
 from intermit.verify.linear_stability import spectral_radius, stability_claim
 from intermit.verify.verdict import Verdict
 from problems import paper_schedule

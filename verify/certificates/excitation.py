@@ -7,8 +7,8 @@ from fractions import Fraction
 from ...models.schedule import Schedule
 from .. import checker
 from ..excitation import excitation
-from ..floor.certificate import schedule_data
 from .format import Certificate, certificate_text
+from .schedule import schedule_data
 
 MOST_PIECES = 400
 """Longer tables get no certificate: the checker looks at every interval between knots."""

@@ -7,15 +7,15 @@ from fractions import Fraction
 from math import frexp
 from typing import TYPE_CHECKING, Any
 
-from ...models.schedule import Schedule
 from ..certificates.format import Certificate
+from ..certificates.schedule import schedule_data
 from ..enclosure.stepping import Step
 from .certify import Floor
 from .witness import Witness
 
 if TYPE_CHECKING:
-    from ..convergence import Convergence
-    from .study import FloorQuestion
+    from .convergence import Convergence
+    from .question import FloorQuestion
     from .torque_bound import TorqueBound
 
 KIND = "filter-floor"
@@ -70,21 +70,6 @@ def question_data(question: FloorQuestion) -> dict[str, Any]:
     for name, value in (("max_rate", q.max_rate), ("max_weighted_rate", q.max_weighted_rate)):
         if value is not None:
             data["initial_set"][name] = value
-    return data
-
-
-def schedule_data(schedule: Schedule) -> dict[str, Any]:
-    """The gain profile: knots, the distinct shapes, which shape each piece has, and the period."""
-    profile = schedule.profile
-    shapes = list(dict.fromkeys(profile.shapes))
-    index = {shape: i for i, shape in enumerate(shapes)}
-    data: dict[str, Any] = {
-        "knots": profile.knots,
-        "shapes": shapes,
-        "pieces": [index[shape] for shape in profile.shapes],
-    }
-    if schedule.period is not None:
-        data["period"] = schedule.period
     return data
 
 

@@ -12,10 +12,10 @@ from math import degrees
 from typing import Any, final
 
 from ..certificates.format import Certificate
-from ..convergence import Convergence
 from ..verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict
 from .certify import Floor
 from .converged import ConvergedFloor
+from .convergence import Convergence
 from .torque_bound import TorqueBound
 from .worst_found import WorstFound
 

@@ -8,9 +8,10 @@ import pytest
 from intermit.models.laws import QuaternionPD
 from intermit.models.schedule import Hermite, Window, build_schedule
 from intermit.models.simulation import filter_minimum, settling_time, simulate, torque_metrics
-from intermit.verify.convergence import envelope
 from intermit.verify.floor.certify import FloorOptions
-from intermit.verify.floor.study import FloorQuestion, answer
+from intermit.verify.floor.convergence import envelope
+from intermit.verify.floor.question import FloorQuestion
+from intermit.verify.floor.study import answer
 from intermit.verify.floor.worst_found import Search
 from intermit.verify.verdict import Verdict
 from problems import ADAPTIVE, J1, PERSISTENCE, REST, TILTED, paper_schedule

@@ -19,10 +19,10 @@ from typing import final
 import numpy as np
 from numpy.typing import NDArray
 
-from .enclosure.balls import sqrt_below
-from .floor.certify import Floor
-from .floor.torque_bound import OUTWARD, greatest_bv
-from .floor.witness import Box, Witness
+from ..enclosure.balls import sqrt_below
+from .certify import Floor
+from .torque_bound import OUTWARD, greatest_bv
+from .witness import Box, Witness
 
 Array = NDArray[np.float64]
 

@@ -1,0 +1,81 @@
+"""What is asked about the floor of one law."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import final
+
+from ...models.laws import Law
+from ...models.rigid_body import RigidBody
+from ...models.schedule import Schedule
+from .certify import FloorOptions
+from .comparison import BodyBounds
+from .sets import InitialSet
+from .worst_found import Search
+
+
+@final
+@dataclass(frozen=True, kw_only=True)
+class FloorQuestion:
+    """What is asked about one law.
+
+    Attributes
+    ----------
+    law, body, schedule : the closed loop
+    inertia_tolerance : largest deviation of each entry of J, kg m^2, or None
+    max_angle_deg : bound on 2 acos(b0), deg, of the initial set
+    max_rate, max_weighted_rate : bounds on |w(0)| (rad/s) and |Omega(0)|_J; both None is at rest
+    attitude, rate : tolerances on |bv| and |w| (rad/s) for the settling time
+    torque_limit, torque_norm : limit on the applied torque, N m, or None
+    run_floor : least R of the scenario's own run and that run's horizon, s, or None
+    run_peak : largest applied torque of that run in `torque_norm`, N m, or None
+    horizon : end of the time asked about where the table is finite, s; None is the table's
+        end, or its 100th window
+    search : how hard to look for the worst start; None skips the search
+    options : how hard to certify
+    """
+
+    law: Law
+    body: RigidBody
+    schedule: Schedule
+    max_angle_deg: Fraction
+    max_rate: Fraction | None = None
+    max_weighted_rate: Fraction | None = None
+    inertia_tolerance: tuple[tuple[Fraction, ...], ...] | None = None
+    attitude: Fraction = Fraction(1, 100)
+    rate: Fraction = Fraction(1, 100)
+    torque_limit: Fraction | None = None
+    torque_norm: str = "component"
+    run_floor: tuple[float, float] | None = None
+    run_peak: float | None = None
+    horizon: Fraction | None = None
+    search: Search | None = None
+    options: FloorOptions | None = None
+
+    @property
+    def bounds(self) -> BodyBounds:
+        """Bounds of the principal inertias, the tolerance included."""
+        bounds = BodyBounds.of(self.body)
+        return bounds if self.inertia_tolerance is None else bounds.widened(self.inertia_tolerance)
+
+    @property
+    def initial(self) -> InitialSet:
+        """The initial set in the comparison system's variables."""
+        return InitialSet.from_bounds(
+            self.bounds,
+            max_angle_deg=self.max_angle_deg,
+            max_rate=self.max_rate,
+            max_weighted_rate=self.max_weighted_rate,
+            gain_term=initial_gain_term(self.law, self.schedule),
+        )
+
+
+def initial_gain_term(law: Law, schedule: Schedule) -> Fraction:
+    """g(0)^2 kappa(0), 1/s, exact: 1/R(0) or k(0) for the laws of the family, zero for others."""
+    piece = next(schedule.profile.pieces)
+    g = piece.shape[0] if piece.shape else Fraction(0)
+    states = {s.name: s.initial for s in law.controller_states}
+    if "k" in states:
+        return g * g * states["k"]
+    return g * g / states["R"] if states.get("R", Fraction(0)) > 0 else Fraction(0)
