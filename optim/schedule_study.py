@@ -108,7 +108,7 @@ def study_case(
     settling, peak = None, None
     try:
         run = run_law(law.name, law, task)
-        settling, peak = run.settling, run.peak(norm)
+        settling, peak = run.figures.settling, run.peak(norm)
     except SimulationError:
         pass  # the case then has no run: its peak and settling stay None, and are shown so
     return ScheduleCase(period, on_time, floor(law, task), settling, peak, best_possible(task, time, norm))

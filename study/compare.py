@@ -55,7 +55,7 @@ def _row(scenario: Scenario, choice: Any) -> Row:
         run = run_law(choice.label, choice.build(), task_of(scenario))
     except SimulationError as error:
         return Row(choice.label, None, {}, str(error))
-    if run.settling is None:
+    if run.figures.settling is None:
         return Row(choice.label, run, {}, f"does not settle by {float(scenario.horizon):g} s")
     terms: dict[str, EqualTerms] = {norm: on_equal_terms(run, norm) for norm in scenario.compare.norms}
     return Row(choice.label, run, terms)
@@ -104,16 +104,16 @@ def _law_cells(row: Row) -> dict[str, Any]:
     if row.run is None:
         return {"law": row.label, "settling": row.failure}
     run = row.run
-    settling: Any = row.failure if run.settling is None else parts.figure_of(
-        "settling", run.settling, digits=6, unit="s"
+    settling: Any = row.failure if run.figures.settling is None else parts.figure_of(
+        "settling", run.figures.settling, digits=6, unit="s"
     )  # fmt: skip
-    floor = run.filter_minimum
+    floor = run.figures.filter_minimum
     return {
         "law": row.label,
         "settling": settling,
         "component": newtons("component", run.peak("component")),
         "euclidean": newtons("euclidean", run.peak("euclidean")),
-        "impulse": parts.figure_of("impulse", run.torque.impulse, digits=4, unit="N m s"),
+        "impulse": parts.figure_of("impulse", run.figures.torque.impulse, digits=4, unit="N m s"),
         "floor": None if floor is None else parts.figure_of("floor", floor.value, digits=6, unit="s"),
     }
 
@@ -152,7 +152,7 @@ def _torque_figure(comparison: Comparison, norm: str, arrays: Arrays) -> dict[st
     for number, row in enumerate(comparison.rows, start=1):
         if row.run is None:
             continue
-        end = row.run.settling if row.run.settling is not None else row.run.trajectory.end
+        end = row.run.figures.settling if row.run.figures.settling is not None else row.run.trajectory.end
         t = np.linspace(0, end, POINTS)
         torque = row.run.trajectory.signals(t).applied_torque
         size = np.abs(torque).max(axis=0) if norm == "component" else np.linalg.norm(torque, axis=0)

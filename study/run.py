@@ -12,16 +12,13 @@ from numpy.typing import NDArray
 from ..models.closed_loop import Saturation
 from ..models.laws import Law
 from ..models.simulation import (
-    Extremum,
+    Figures,
     Invariants,
     SimulationError,
-    TorqueMetrics,
     Trajectory,
-    filter_minimum,
     invariants,
-    settling_time,
+    read_figures,
     simulate,
-    torque_metrics,
 )
 from ..reports import parts
 from ..scenario import Scenario
@@ -37,15 +34,12 @@ class Run:
     Attributes
     ----------
     trajectory : None if the run stopped before the horizon; then `failure` says where and why
-    settling : s; None if the run ends outside the tolerances
-    torque : peaks and impulse over the whole run
-    filter_floor : least R of this run, None for a law without a filter
+    figures : over the whole run
+    drift : how well the run kept what must be conserved
     """
 
     trajectory: Trajectory | None
-    settling: float | None = None
-    torque: TorqueMetrics | None = None
-    filter_floor: Extremum | None = None
+    figures: Figures | None = None
     drift: Invariants | None = None
     failure: str = ""
 
@@ -61,11 +55,12 @@ class Seen:
 
 def seen_in(scenario: Scenario, run: Run | None) -> Seen:
     """Figures of a run that stand beside what is proved."""
-    if run is None or run.torque is None:
+    if run is None or run.figures is None:
         return Seen()
+    torque, floor = run.figures.torque, run.figures.filter_minimum
     euclidean = scenario.limits is not None and scenario.limits.norm == "euclidean"
-    peak = run.torque.peak_euclidean if euclidean else run.torque.peak_component
-    return Seen(run.filter_floor.value if run.filter_floor is not None else None, peak.value)
+    peak = torque.peak_euclidean if euclidean else torque.peak_component
+    return Seen(floor.value if floor is not None else None, peak.value)
 
 
 def run_law(scenario: Scenario, law: Law) -> Run:
@@ -86,25 +81,20 @@ def run_law(scenario: Scenario, law: Law) -> Run:
     except SimulationError as error:
         return Run(None, failure=str(error))
     tolerance = scenario.tolerance
-    has_filter = "R" in trajectory.loop.controller_states
-    return Run(
-        trajectory,
-        settling_time(trajectory, attitude=float(tolerance.attitude), rate=float(tolerance.rate)),
-        torque_metrics(trajectory),
-        filter_minimum(trajectory) if has_filter else None,
-        invariants(trajectory),
-    )
+    figures = read_figures(trajectory, attitude=tolerance.attitude, rate=tolerance.rate)
+    return Run(trajectory, figures, invariants(trajectory))
 
 
 def metrics(run: Run) -> list[dict[str, Any]]:
     """Figures of a run as quantities of the record; the simulation is good to 8 digits, 6 are shown."""
-    if run.trajectory is None or run.torque is None or run.drift is None:
+    if run.figures is None or run.drift is None:
         return []
-    torque, out = run.torque, []
-    if run.settling is None:
+    settling, torque, floor = run.figures.settling, run.figures.torque, run.figures.filter_minimum
+    out = []
+    if settling is None:
         out.append(parts.quantity("settling_time", None, unit="s", note="not settled within the horizon"))
     else:
-        out.append(_figure("settling_time", run.settling, "s"))
+        out.append(_figure("settling_time", settling, "s"))
     out += [
         _figure("peak_torque_component", torque.peak_component.value, "N m"),
         _figure("peak_torque_euclidean", torque.peak_euclidean.value, "N m"),
@@ -112,8 +102,8 @@ def metrics(run: Run) -> list[dict[str, Any]]:
         _figure("peak_command_euclidean", torque.peak_commanded_euclidean.value, "N m"),
         _figure("impulse", torque.impulse, "N m s"),
     ]
-    if run.filter_floor is not None:
-        out.append(_figure("least_filter_state", run.filter_floor.value, "s"))
+    if floor is not None:
+        out.append(_figure("least_filter_state", floor.value, "s"))
     out.append(parts.quantity("quaternion_norm_drift", 0.0, run.drift.quaternion_norm, side="upper"))
     out.append(parts.quantity("free_momentum_drift", 0.0, run.drift.free_momentum, side="upper"))
     return out

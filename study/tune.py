@@ -107,9 +107,12 @@ def tuning_record(scenario: Scenario, tuned: Tuned) -> Record:
         ]
         columns = [parts.column("name", "parameter"), parts.column("value", "value, exact")]
         tables.append(parts.table("parameters", f"Parameters of {tuned.label}", columns, rows))
-        assert run.settling is not None
+        assert run.figures.settling is not None
         figures = [
-            {"name": "settling time", "value": parts.figure_of("settling", run.settling, digits=6, unit="s")},
+            {
+                "name": "settling time",
+                "value": parts.figure_of("settling", run.figures.settling, digits=6, unit="s"),
+            },
             {"name": "peak, component", "value": newtons("component", run.peak("component"))},
             {"name": "peak, Euclidean", "value": newtons("euclidean", run.peak("euclidean"))},
         ]

@@ -1,5 +1,6 @@
 """Simulation of one run, never across a schedule knot, and the figures read off it."""
 
+from .figures import Figures, read_figures
 from .integrate import DOP853, SimulationError, simulate
 from .metrics import (
     Extremum,
@@ -18,6 +19,7 @@ from .trajectory import Segment, Signals, Trajectory
 __all__ = [
     "DOP853",
     "Extremum",
+    "Figures",
     "Invariants",
     "Phase",
     "Segment",
@@ -31,6 +33,7 @@ __all__ = [
     "minimum",
     "phase_field",
     "phases_between",
+    "read_figures",
     "settling_time",
     "signal_degree",
     "simulate",

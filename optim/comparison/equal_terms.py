@@ -73,13 +73,13 @@ def problem_of(run: LawRun, norm: str, profile: WindowProfile = WindowProfile.FU
     ValueError
         If the law did not settle within its run.
     """
-    if run.settling is None:
+    if run.figures.settling is None:
         raise ValueError(f"{run.label} does not settle by {float(run.task.horizon):g} s: nothing to compare")
     task = run.task
     return TransferProblem.through(
         task.schedule,
         body=task.body,
-        horizon=Fraction(run.settling),
+        horizon=Fraction(run.figures.settling),
         attitude=task.quaternion,
         rate=task.rate,
         norm=NORMS[norm],

@@ -14,13 +14,10 @@ from ...models.rigid_body import RigidBody
 from ...models.schedule import Schedule
 from ...models.simulation import (
     DOP853,
-    Extremum,
-    TorqueMetrics,
+    Figures,
     Trajectory,
-    filter_minimum,
-    settling_time,
+    read_figures,
     simulate,
-    torque_metrics,
 )
 
 Array = NDArray[np.float64]
@@ -58,28 +55,19 @@ class Task:
 @final
 @dataclass(frozen=True, eq=False)
 class LawRun:
-    """One law on a task.
-
-    Attributes
-    ----------
-    settling : settling time, s, or None if the run ends outside the tolerances
-    torque : peaks and impulse over [0, settling], or over the whole run if it does not settle
-    filter_minimum : least R over the run, or None for a law without a filter
-    """
+    """One law on a task; its torque figures are over [0, settling], or the whole run if it never settles."""
 
     label: str
     law: Law
     task: Task
     trajectory: Trajectory
-    settling: float | None
-    torque: TorqueMetrics
-    filter_minimum: Extremum | None
+    figures: Figures
 
     def peak(self, norm: str) -> float:
         """Peak applied torque, N m, in the norm "component" or "euclidean"."""
         return {
-            "component": self.torque.peak_component.value,
-            "euclidean": self.torque.peak_euclidean.value,
+            "component": self.figures.torque.peak_component.value,
+            "euclidean": self.figures.torque.peak_euclidean.value,
         }[norm]
 
 
@@ -99,16 +87,7 @@ def run_law(label: str, law: Law, task: Task, *, method: DOP853 = ACCURATE) -> L
         law, task.body, task.schedule, quaternion=task.quaternion, rate=task.rate_array,
         horizon=task.horizon, method=method,
     )  # fmt: skip
-    settling = settling_time(
-        trajectory, attitude=float(task.attitude_tolerance), rate=float(task.rate_tolerance)
+    figures = read_figures(
+        trajectory, attitude=task.attitude_tolerance, rate=task.rate_tolerance, until_settled=True
     )
-    has_filter = "R" in trajectory.loop.controller_states
-    return LawRun(
-        label=label,
-        law=law,
-        task=task,
-        trajectory=trajectory,
-        settling=settling,
-        torque=torque_metrics(trajectory, until=settling),
-        filter_minimum=filter_minimum(trajectory) if has_filter else None,
-    )
+    return LawRun(label=label, law=law, task=task, trajectory=trajectory, figures=figures)

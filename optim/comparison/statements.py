@@ -90,11 +90,11 @@ def _gamma_raises_peak(slow: LawRun, fast: LawRun) -> Statement:
 
 def _gamma_settles_sooner(slow: LawRun, fast: LawRun) -> Statement:
     says = "larger gamma settles faster"
-    if fast.settling is None or slow.settling is None:
-        both = fast.settling is not None
+    if fast.figures.settling is None or slow.figures.settling is None:
+        both = fast.figures.settling is not None
         return Statement("gamma_settling", says, both, "a run does not settle within the horizon")
-    detail = f"{slow.settling:.4g} s, then {fast.settling:.4g} s"
-    return Statement("gamma_settling", says, fast.settling < slow.settling, detail)
+    detail = f"{slow.figures.settling:.4g} s, then {fast.figures.settling:.4g} s"
+    return Statement("gamma_settling", says, fast.figures.settling < slow.figures.settling, detail)
 
 
 def _same_filter(runs: Sequence[LawRun]) -> Statement:

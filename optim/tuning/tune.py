@@ -91,7 +91,7 @@ def tune(
         chosen = with_parameters(law, dict(trial.parameters))
         reason = certify(chosen) if certify is not None else None
         run = run_law(name, chosen, task)
-        if reason is None and (run.settling is None or run.settling > settle):
+        if reason is None and (run.figures.settling is None or run.figures.settling > settle):
             reason = "settles later than asked when simulated accurately"
         if reason is None:
             return Tuned(name, settle, norm, chosen, history, tuple(refused))

@@ -38,7 +38,7 @@ def test_evaluation_agrees_with_an_accurate_run():
     for candidate, peak, excess in zip(candidates, outcomes.peak, outcomes.excess, strict=True):
         run = run_law("x", with_parameters(ADAPTIVE, candidate), task())
         assert peak == pytest.approx(run.peak("component"), rel=1e-4)
-        assert (excess <= 0) == (run.settling is not None and run.settling <= SETTLE)
+        assert (excess <= 0) == (run.figures.settling is not None and run.figures.settling <= SETTLE)
 
 
 def test_same_seed_same_search_and_the_answer_is_the_least_that_settles():
@@ -76,5 +76,5 @@ def test_tuned_laws_reach_the_known_peaks(law, most):
     """J1, 120 deg about (1, 1, 1) from rest, tolerance 1e-2, settled by 28 s, largest component."""
     tuned = tune(law, task(), settle=SETTLE, norm="component")
     run = tuned.run(task())
-    assert run.settling <= SETTLE
+    assert run.figures.settling <= SETTLE
     assert run.peak("component") <= most
