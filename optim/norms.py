@@ -53,15 +53,8 @@ class Norm(ABC):
         """Largest direction . torque over torques of unit effort, shape (..., 3) -> (...)."""
 
 
-@final
-@dataclass(frozen=True)
-class Euclidean(Norm):
-    """|torque| <= p: a gimballed or well-spread set of thrusters."""
-
-    @property
-    def name(self) -> str:
-        """Words for reports."""
-        return "Euclidean"
+class _OfTheTorque(Norm):
+    """What is limited is the torque itself: v = torque."""
 
     @property
     def unit(self) -> str:
@@ -73,13 +66,24 @@ class Euclidean(Norm):
         """The identity, (3, 3)."""
         return np.eye(3)
 
+    def effort(self, control: ArrayLike) -> Array:
+        """The peak of the torque."""
+        return self.peak(control)
+
+
+@final
+@dataclass(frozen=True)
+class Euclidean(_OfTheTorque):
+    """|torque| <= p: a gimballed or well-spread set of thrusters."""
+
+    @property
+    def name(self) -> str:
+        """Words for reports."""
+        return "Euclidean"
+
     def peak(self, torque: ArrayLike) -> Array:
         """Euclidean length."""
         return np.asarray(np.linalg.norm(np.asarray(torque, dtype=float), axis=-1))
-
-    def effort(self, control: ArrayLike) -> Array:
-        """Euclidean length."""
-        return self.peak(control)
 
     def support(self, direction: ArrayLike) -> Array:
         """Euclidean length (the ball is its own polar)."""
@@ -88,7 +92,7 @@ class Euclidean(Norm):
 
 @final
 @dataclass(frozen=True)
-class LargestComponent(Norm):
+class LargestComponent(_OfTheTorque):
     """|torque_i| <= p for each body axis i: a pair of thrusters for each axis."""
 
     @property
@@ -96,23 +100,9 @@ class LargestComponent(Norm):
         """Words for reports."""
         return "largest component"
 
-    @property
-    def unit(self) -> str:
-        """Unit of the peak."""
-        return "N m"
-
-    @property
-    def control_matrix(self) -> Array:
-        """The identity, (3, 3)."""
-        return np.eye(3)
-
     def peak(self, torque: ArrayLike) -> Array:
         """Largest absolute component."""
         return np.asarray(np.abs(np.asarray(torque, dtype=float)).max(axis=-1))
-
-    def effort(self, control: ArrayLike) -> Array:
-        """Largest absolute component."""
-        return self.peak(control)
 
     def support(self, direction: ArrayLike) -> Array:
         """Sum of absolute components (polar of the cube)."""
