@@ -19,12 +19,13 @@ from ...models.rigid_body import RigidBody
 from .domain import SampledDomain
 from .function import DerivativeFunction
 from .search import Refinement, refine
+from .sobol import PRIMITIVE, SobolRows
 
 Array = NDArray[np.float64]
 Progress = Callable[[float], None]
 
 BLOCK = 1 << 14
-"""Points drawn at a time: memory does not grow with the number of samples."""
+"""Points drawn at a time: memory does not grow with their number, and a block stays in the cache."""
 KEPT = 8
 """Worst samples from which the gradient search starts."""
 BINS = 80
@@ -102,9 +103,12 @@ def sample_derivative(
     uniform = _uniform(check, body, weight, gain_target)
     function = ArrayFunction(shared(walk(check.function)), uniform=(1, 2, 3))
     tally = _Tally(check.in_family, _edges(check))
+    room: list[Array] = []
     for coordinates, fraction in _blocks(domain, sampling):
-        results = function(coordinates, *uniform)
-        tally.add(coordinates, [row[0] for row in results])
+        if not room or room[0].shape[1] != coordinates.shape[1]:
+            room = function.allocate(coordinates.shape[1])
+        function.into((coordinates, *uniform), room)
+        tally.add(coordinates, [row[0] for row in room])
         if progress is not None:
             progress(fraction)
     worst = refine(check, domain, uniform, tally.worst.starts(), "rate")
@@ -142,15 +146,28 @@ def _edges(check: DerivativeFunction) -> Array:
 
 
 def _blocks(domain: SampledDomain, sampling: Sampling) -> Iterator[tuple[Array, float]]:
-    """Coordinates of the points, block by block, and the fraction drawn with each."""
-    from scipy.stats import qmc
+    """Coordinates of the points, block by block, and the fraction drawn with each; a block is overwritten
+    by the next.
+    """
+    # Whole powers of two keep the sequence balanced; what is drawn too many is left out.
+    size = min(BLOCK, 1 << (sampling.count - 1).bit_length())
+    out = np.empty((domain.dimension + 1, size))
+    for drawn, cube in zip(range(0, sampling.count, size), _cubes(domain, sampling, size), strict=False):
+        kept = out[:, : sampling.count - drawn]
+        domain.fill(cube[:, : kept.shape[1]], kept)
+        yield kept, min(drawn + size, sampling.count) / sampling.count
+
+
+def _cubes(domain: SampledDomain, sampling: Sampling, size: int) -> Iterator[Array]:
+    """Rows of unit-cube coordinates, (dimension, size)."""
+    if domain.dimension <= len(PRIMITIVE):
+        yield from SobolRows(domain.dimension, seed=sampling.seed, block=size).blocks()
+        return
+    from scipy.stats import qmc  # has direction numbers for thousands of coordinates
 
     engine = qmc.Sobol(domain.dimension, scramble=True, rng=np.random.default_rng(sampling.seed))
-    size = min(BLOCK, 1 << (sampling.count - 1).bit_length())
-    for drawn in range(0, sampling.count, size):
-        # Whole powers of two keep the sequence balanced; what is drawn too many is left out.
-        cube = engine.random(size)[: sampling.count - drawn]
-        yield domain.states(cube), min(drawn + size, sampling.count) / sampling.count
+    while True:
+        yield engine.random(size).T
 
 
 @final
@@ -161,12 +178,18 @@ class _Least:
         self.values, self.points = np.empty(0), np.empty((0, 0))
 
     def add(self, values: Array, coordinates: Array) -> None:
-        kept = np.argsort(values, kind="stable")[:KEPT] if len(values) <= KEPT else _smallest(values)
-        points = coordinates[:, kept].T
-        if self.values.size:
-            values, points = np.append(self.values, values[kept]), np.vstack([self.points, points])
+        if len(self.values) == KEPT:  # a block rarely holds anything among the least of all before it
+            kept = np.flatnonzero(values < self.values[-1])
+            if not kept.size:
+                return
         else:
-            values = values[kept]
+            kept = np.arange(len(values))
+        if len(kept) > KEPT:
+            kept = kept[np.argpartition(values[kept], KEPT)[:KEPT]]
+        points = coordinates[:, kept].T
+        values = np.append(self.values, values[kept])
+        if self.values.size:
+            points = np.vstack([self.points, points])
         order = np.argsort(values, kind="stable")[:KEPT]
         self.values, self.points = values[order], points[order]
 
@@ -177,10 +200,6 @@ class _Least:
     def starts(self) -> Array:
         """Coordinates of the kept samples, worst first, (KEPT, n)."""
         return self.points
-
-
-def _smallest(values: Array) -> NDArray[np.intp]:
-    return np.argpartition(values, KEPT)[:KEPT]
 
 
 @final
@@ -195,19 +214,27 @@ class _Tally:
         self.counts = np.zeros(len(edges) - 1)
 
     def add(self, coordinates: Array, results: list[Array]) -> None:
+        """Take a block in; its results are overwritten."""
         rate, storage, bound, by_differentiation, stated, scale = results
         rounding = ROUNDING * scale
-        positive = storage > 0
-        margin = np.where(positive, -rate / np.where(positive, storage, 1.0), np.inf)
-        self.worst.add(margin, coordinates)
         self.violations += int(np.count_nonzero(rate > rounding))
-        inside = np.clip(margin, self.edges[0], np.nextafter(self.edges[-1], 0))
-        self.counts += np.histogram(inside, self.edges)[0]
-        if not self.in_family:
-            return
-        self.worst_bound.add((bound - rate) / storage, coordinates)
-        self.bound_violations += int(np.count_nonzero(rate > bound + rounding))
-        residuals = np.abs(by_differentiation - stated) / scale
-        largest = int(np.argmax(residuals))
-        if not self.residual_state.size or residuals[largest] > self.residual:
-            self.residual, self.residual_state = float(residuals[largest]), coordinates[:, largest].copy()
+        positive = storage > 0
+        with np.errstate(all="ignore"):
+            margin = rate / storage
+        np.negative(margin, out=margin)
+        if not positive.all():
+            margin[~positive] = np.inf
+        self.worst.add(margin, coordinates)
+        if self.in_family:
+            residuals = np.subtract(by_differentiation, stated, out=by_differentiation)
+            np.divide(np.abs(residuals, out=residuals), scale, out=residuals)
+            largest = int(np.argmax(residuals))
+            if not self.residual_state.size or residuals[largest] > self.residual:
+                self.residual, self.residual_state = float(residuals[largest]), coordinates[:, largest].copy()
+            rounding += bound
+            self.bound_violations += int(np.count_nonzero(rate > rounding))
+            bound -= rate
+            self.worst_bound.add(np.divide(bound, storage, out=bound), coordinates)
+        first, last = self.edges[0], self.edges[-1]
+        np.clip(margin, first, np.nextafter(last, 0), out=margin)
+        self.counts += np.histogram(margin, len(self.counts), (first, last))[0]

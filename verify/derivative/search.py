@@ -48,13 +48,13 @@ def refine(
     """
     from scipy.optimize import minimize
 
-    objective, gradient, margin_of = _objective(check, margin)
+    objective = _Objective(check, margin, uniform)
     low, high = domain.bounds()
     limits = [(-2.0, 2.0)] * 4 + list(zip(low.tolist(), high.tolist(), strict=True))
     best, where, evaluations = np.inf, starts[0], 0
     for start in np.vstack([starts, _shrunk(starts)]):
         found = minimize(
-            lambda z: (float(objective(z, *uniform)), np.asarray(gradient(z, *uniform)).ravel()),
+            objective,
             start,
             jac=True,
             method="L-BFGS-B",
@@ -63,10 +63,10 @@ def refine(
         )
         evaluations += int(found.nfev)
         for point in (_unit(start), _unit(found.x)):
-            value = float(objective(point, *uniform))
+            value, _ = objective(point)
             if value < best:
                 best, where = value, point
-    return Refinement(float(margin_of(where, *uniform)), where, evaluations)
+    return Refinement(objective.margin(where), where, evaluations)
 
 
 def _shrunk(starts: Array) -> Array:
@@ -82,20 +82,45 @@ def _unit(point: Array) -> Array:
     return unit
 
 
-def _objective(check: DerivativeFunction, margin: Margin) -> tuple[Any, Any, Any]:
-    """The margin with its barrier, its gradient, and the margin itself; attitudes are normalised."""
-    import casadi as ca
+@final
+class _Objective:
+    """The margin with its barrier and its gradient; attitudes are normalised.
 
-    function = check.function
-    point = ca.SX.sym("z", function.size1_in(0))
-    others = [ca.SX.sym(f"u{i}", function.size1_in(i)) for i in (1, 2, 3)]
-    unit = ca.vertcat(point[:4] / ca.norm_2(point[:4]), point[4:])
-    rate, storage, bound, *_ = function(unit, *others)
-    gap = -rate if margin == "rate" else bound - rate
-    value = (gap + BARRIER) / storage
-    arguments = [point, *others]
-    return (
-        ca.Function("objective", arguments, [value]),
-        ca.Function("gradient", arguments, [ca.gradient(value, point)]),
-        ca.Function("margin_of", arguments, [gap / storage]),
-    )
+    CasADi reads and writes arrays of this object: converting arguments takes ten times the arithmetic.
+    """
+
+    def __init__(
+        self, check: DerivativeFunction, margin: Margin, uniform: tuple[Array, Array, Array]
+    ) -> None:
+        import casadi as ca
+
+        function = check.function
+        point = ca.SX.sym("z", function.size1_in(0))
+        others = [ca.SX.sym(f"u{i}", function.size1_in(i)) for i in (1, 2, 3)]
+        unit = ca.vertcat(point[:4] / ca.norm_2(point[:4]), point[4:])
+        rate, storage, bound, *_ = function(unit, *others)
+        gap = -rate if margin == "rate" else bound - rate
+        value = (gap + BARRIER) / storage
+        results = [value, ca.densify(ca.gradient(value, point)), gap / storage]
+        self._function = ca.Function("objective", [point, *others], results)
+        self._point = np.empty(function.size1_in(0))
+        self._results = [np.empty(1), np.empty(self._point.size), np.empty(1)]
+        self._uniform = [np.array(row, dtype=float) for row in uniform]
+        buffer: Any
+        buffer, self._evaluate = self._function.buffer()
+        for i, values in enumerate([self._point, *self._uniform]):
+            buffer.set_arg(i, values.data)
+        for i, values in enumerate(self._results):
+            buffer.set_res(i, values.data)
+        self._kept = buffer  # CasADi keeps no reference to it
+
+    def __call__(self, point: Array) -> tuple[float, Array]:
+        """Value and gradient."""
+        self._point[:] = point
+        self._evaluate()
+        return float(self._results[0][0]), self._results[1].copy()
+
+    def margin(self, point: Array) -> float:
+        """The margin itself."""
+        self(point)
+        return float(self._results[2][0])
