@@ -24,7 +24,9 @@ Array = NDArray[np.float64]
 
 PLANT_STATES = ("b0", "b1", "b2", "b3", "w1", "w2", "w3")
 INERTIA_NAMES = ("J11", "J12", "J13", "J22", "J23", "J33")
-_UPPER = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
+INERTIA_ENTRIES = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
+
+"""Positions of those names in J."""
 
 
 @final
@@ -129,7 +131,7 @@ class ClosedLoop:
 def body_values(body: RigidBody) -> Array:
     """The 12 numbers of `ClosedLoop.body` for a rigid body."""
     J, inverse = body.inertia, body.inverse_inertia
-    return np.array([J[i, j] for i, j in _UPPER] + [inverse[i, j] for i, j in _UPPER])
+    return np.array([J[i, j] for i, j in INERTIA_ENTRIES] + [inverse[i, j] for i, j in INERTIA_ENTRIES])
 
 
 @lru_cache(maxsize=64)
@@ -176,7 +178,7 @@ def close_loop(law: Law, saturation: Saturation | None = None) -> ClosedLoop:
 
 def _symmetric(entries: Expression) -> Expression:
     matrix = ca.SX(3, 3)
-    for entry, (i, j) in enumerate(_UPPER):
+    for entry, (i, j) in enumerate(INERTIA_ENTRIES):
         matrix[i, j] = entries[entry]
         matrix[j, i] = entries[entry]
     return matrix

@@ -15,6 +15,7 @@ from ..verify.filter_start import filter_start_claim
 from ..verify.floor.claims import torque_quantities
 from ..verify.floor.study import FloorAnswer, answer
 from ..verify.lyapunov.claims import lyapunov_claims
+from ..verify.torque_excess import refuted_limit
 from ..verify.verdict import Claim, Verdict
 from .curves import CertifiedCurves, certified_curves
 from .floor import floor_question, is_certified
@@ -95,6 +96,13 @@ def find(
     if "R" not in (state.name for state in law.controller_states):
         del claims["filter.floor"]
     _add_torque(claims, found)
+    limit = claims.get("torque.limit")
+    if limit is not None and limit.verdict is Verdict.UNDECIDED and seen.excess_at is not None:
+        tell("the run beyond the torque limit", 0.5)
+        start = scenario.initial
+        claims[limit.key] = refuted_limit(
+            limit, question, quaternion=start.attitude, rate=start.exact_rate, at=seen.excess_at
+        )
     if options.margins and claims["convergence"].verdict is Verdict.PROVED:
         tell("margins of convergence", 0.6)
         quantities = tuple(convergence_margins(scenario, choice, partial(is_certified, question)))

@@ -183,7 +183,8 @@ CLAIM_KEYS: dict[str, ClaimKey] = {
             "torque.limit",
             "applied torque within its limit",
             "The applied torque g u never exceeds the limit, from any start in the initial set.",
-            "The certified bounds on R, k, the angle and the rate, put into the law.",
+            "Proved by the certified bounds on R, k, the angle and the rate, put into the law; refuted by "
+            "one run from the set, enclosed in ball arithmetic.",
             "this package, docs/theory-floor.md",
             _FLOOR,
             by_law=True,

@@ -47,20 +47,42 @@ class Run:
 @final
 @dataclass(frozen=True)
 class Seen:
-    """What a run showed: its least R, s, and its largest applied torque in the limit's norm, N m."""
+    """What a run showed.
+
+    Attributes
+    ----------
+    floor : its least R, s
+    peak : its largest applied torque in the limit's norm, N m
+    excess_at : an instant at which that torque is well above the limit, s; None if it never is
+    """
 
     floor: float | None = None
     peak: float | None = None
+    excess_at: float | None = None
 
 
 def seen_in(scenario: Scenario, run: Run | None) -> Seen:
     """Figures of a run that stand beside what is proved."""
-    if run is None or run.figures is None:
+    if run is None or run.figures is None or run.trajectory is None:
         return Seen()
     torque, floor = run.figures.torque, run.figures.filter_minimum
     euclidean = scenario.limits is not None and scenario.limits.norm == "euclidean"
     peak = torque.peak_euclidean if euclidean else torque.peak_component
-    return Seen(floor.value if floor is not None else None, peak.value)
+    over = None
+    if scenario.limits is not None and not run.trajectory.is_saturated_model:
+        over = _excess_instant(run.trajectory, float(scenario.limits.torque), peak.value, euclidean=euclidean)
+    return Seen(floor.value if floor is not None else None, peak.value, over)
+
+
+def _excess_instant(trajectory: Trajectory, limit: float, peak: float, *, euclidean: bool) -> float | None:
+    """First instant at which the torque has gone a tenth of the way from the limit to its peak, s."""
+    if not peak > limit * (1 + 1e-6):
+        return None
+    times = trajectory.grid()
+    torque = trajectory.signals(times).applied_torque
+    size = np.linalg.norm(torque, axis=0) if euclidean else np.abs(torque).max(axis=0)
+    above = np.flatnonzero(size > limit + 0.1 * (peak - limit))
+    return float(times[above[0]]) if above.size else None
 
 
 def run_law(scenario: Scenario, law: Law) -> Run:

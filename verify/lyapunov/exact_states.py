@@ -15,14 +15,13 @@ from typing import Any, final
 
 import casadi as ca
 
-from ...models.closed_loop import INERTIA_NAMES, ClosedLoop
+from ...models.closed_loop import INERTIA_ENTRIES, INERTIA_NAMES, ClosedLoop
 from ...models.laws import Expression
 from ...models.lowering import FIELD, Program, evaluate, walk
 from ..checker import inverse_matrix
 from .candidates import Candidate
 
 ExactRows = Sequence[Sequence[Fraction]]
-_UPPER = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
 
 
 class IrrationalError(ArithmeticError):
@@ -146,7 +145,7 @@ class ExactDerivative:
             loop, extra, [rate, candidate.reference, right if self._has_right else rate]
         )
         inverse = inverse_matrix([list(row) for row in inertia])
-        self._body = [M[i][j] for M in (inertia, inverse) for i, j in _UPPER]
+        self._body = [M[i][j] for M in (inertia, inverse) for i, j in INERTIA_ENTRIES]
 
     def at(self, state: ExactState) -> tuple[Fraction, Fraction, Fraction]:
         """(V', W, claimed right side), exactly."""
@@ -177,4 +176,4 @@ def loop_arguments(loop: ClosedLoop, state: ExactState, body: Sequence[Fraction]
 
 def entries(inertia: ExactRows) -> dict[str, Fraction]:
     """Upper triangle of J by name."""
-    return {name: inertia[i][j] for name, (i, j) in zip(INERTIA_NAMES, _UPPER, strict=True)}
+    return {name: inertia[i][j] for name, (i, j) in zip(INERTIA_NAMES, INERTIA_ENTRIES, strict=True)}
