@@ -8,10 +8,11 @@ from fractions import Fraction
 from functools import partial
 from typing import final
 
+from ..models.closed_loop import close_loop
 from ..models.laws import Law
 from ..scenario import LawChoice, Scenario
 from ..verify.derivative import SampledDerivative, with_samples
-from ..verify.filter_start import filter_start_claim
+from ..verify.filter_start import filter_start_claim, follows_filter
 from ..verify.floor.claims import torque_quantities
 from ..verify.floor.study import FloorAnswer, answer
 from ..verify.lyapunov.claims import lyapunov_claims
@@ -151,11 +152,11 @@ def _silent(stage: str, fraction: float) -> None:
 
 
 def _filter_claims(scenario: Scenario, law: Law) -> Iterator[Claim]:
-    """Claims about the filter state, for a law that has one."""
-    initial = {state.name: state.initial for state in law.controller_states}
-    decay = law.parameters.get("lambda")
-    if "R" in initial and decay is not None:
-        yield filter_start_claim(scenario.schedule, decay=decay, initial=initial["R"])
+    """Claims about the filter state, for a law whose state R is the persistence filter's."""
+    start = next((state.initial for state in law.controller_states if state.name == "R"), Fraction(0))
+    decay = law.parameters.get("lambda", Fraction(0))
+    if start > 0 and decay > 0 and follows_filter(close_loop(law)):
+        yield filter_start_claim(scenario.schedule, decay=decay, initial=start)
 
 
 def _add_samples(claims: dict[str, Claim], samples: SampledDerivative) -> None:

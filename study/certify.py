@@ -9,12 +9,14 @@ from dataclasses import dataclass, replace
 from typing import Any, final
 
 from ..models.closed_loop import close_loop
+from ..models.laws import Law
 from ..scenario import Scenario
 from ..scenario.laws import USER
 from ..verify.certificates import Certificate, as_text, certificate_text
 from ..verify.certificates.excitation import excitation_certificate
+from ..verify.certificates.facts import fact_certificate, filter_start_certificate, windows_data
 from ..verify.certificates.program import NotAlgebraicError
-from ..verify.floor.certificate import question_data
+from ..verify.floor.certificate import question_data, schedule_data
 from ..verify.lyapunov import certificates_of
 from ..verify.lyapunov.forms import inertia_data, law_form
 from ..verify.verdict import Claim, Evidence, EvidenceKind, Verdict
@@ -49,26 +51,35 @@ class Certification:
 
 def certify(scenario: Scenario, progress: Progress) -> Certification:
     """Decide the claims of a scenario by exact means and collect their certificates."""
-    claims = [("schedule", _with_certificate(claim, scenario)) for claim in scenario_claims(scenario)]
+    claims = [("schedule", _certified(claim, scenario)) for claim in scenario_claims(scenario)]
     for i, choice in enumerate(scenario.laws):
         progress(choice.label, i / len(scenario.laws))
-        claims += [(choice.label, claim) for claim in decided_claims(scenario, choice.build())]
+        law = choice.build()
+        claims += [
+            (choice.label, _certified(claim, scenario, law)) for claim in decided_claims(scenario, law)
+        ]
     return Certification(tuple(claims), certificates_of(claim for _, claim in claims))
 
 
-def _with_certificate(claim: Claim, scenario: Scenario) -> Claim:
-    """Put a certificate under the claim of persistent excitation, where there is one."""
-    if claim.key != "schedule.excitation" or claim.verdict is not Verdict.PROVED:
-        return claim
-    length = scenario.check.pe_window
-    certificate = excitation_certificate(
-        scenario.schedule, default_length(scenario.schedule) if length is None else length
-    )
+def _certified(claim: Claim, scenario: Scenario, law: Law | None = None) -> Claim:
+    """Put a certificate under a claim that was decided without one, where it can have one."""
+    certificate = _certificate(claim, scenario, law)
     if certificate is None:
         return claim
-    summary = "the moving integral of g^2 enclosed by Bernstein coefficients, by the stand-alone checker"
+    summary = "decided once more, from the data alone, by the stand-alone checker"
     evidence = Evidence(EvidenceKind.CERTIFICATE, summary, claim.source, {"certificate": certificate})
     return replace(claim, evidence=(*claim.evidence, evidence))
+
+
+def _certificate(claim: Claim, scenario: Scenario, law: Law | None) -> Certificate | None:
+    schedule = scenario.schedule
+    if claim.key == "filter.start":
+        return None if law is None else filter_start_certificate(schedule, law)
+    if claim.key == "schedule.excitation":
+        if claim.verdict is not Verdict.PROVED:
+            return None
+        return excitation_certificate(schedule, scenario.check.pe_window or default_length(schedule))
+    return fact_certificate(schedule, claim)
 
 
 def differences(text: str, scenario: Scenario) -> tuple[str, ...]:
@@ -82,16 +93,19 @@ def differences(text: str, scenario: Scenario) -> tuple[str, ...]:
     for number, part in enumerate(json.loads(text)["parts"], start=1):
         gaps = [tuple(_unequal(part["data"], data)) for data in known]
         if not any(not gap for gap in gaps):
-            least = min(gaps, key=len, default=("the scenario has no law",))
+            least = min(gaps, key=len, default=())
             found.append(f"part {number}: {', '.join(least)}")
     return tuple(found)
 
 
 def _scenario_data(scenario: Scenario) -> Iterator[Mapping[str, Any]]:
-    """Everything certificates may say of each law of a scenario, as they say it."""
+    """Everything certificates may say of a scenario, for each of its laws, as they say it."""
+    shared = {"schedule": schedule_data(scenario.schedule)} | windows_data(scenario.schedule)
+    if not scenario.laws:
+        yield shared
     for choice in scenario.laws:
         law = choice.build()
-        data = question_data(floor_question(scenario, law, Seen(), search=False))
+        data = shared | question_data(floor_question(scenario, law, Seen(), search=False))
         data |= inertia_data(scenario.body.exact_inertia, scenario.inertia_tolerance)
         data["parameters"] = law.parameters
         with suppress(NotAlgebraicError):  # such a law has no certificate that writes it out

@@ -4,8 +4,13 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+from ..models.closed_loop import ClosedLoop
+from ..models.laws.scaled import filter_rate
 from ..models.schedule import Schedule
 from ..models.schedule import polynomial as poly
+from . import checker
+from .certificates.program import NotAlgebraicError, write_lines
+from .lyapunov.forms import symbol_names
 from .polynomial_range import least_value
 from .rational_quantity import rational_quantity
 from .verdict import Claim, Evidence, EvidenceKind, Verdict, Witness
@@ -61,9 +66,37 @@ def filter_start_claim(schedule: Schedule, *, decay: Fraction, initial: Fraction
     )
 
 
+def follows_filter(loop: ClosedLoop) -> bool:
+    """Whether the law's state R obeys R' = -lambda R + g^2 (1 + b0), as polynomials; its name is no proof."""
+    R, decay = loop.controller_states.get("R"), loop.parameter_symbols.get("lambda")
+    if R is None or decay is None:
+        return False
+    expected = filter_rate(loop.plant, loop.time_symbols, R, decay)
+    symbols = symbol_names(loop)
+    try:
+        lines = write_lines(symbols, [loop.control.state_rates["R"] - expected])
+        ring = checker.Ring(list(symbols))
+        program = checker.Node(list(lines.instructions), "filter")
+        values = checker.run(program, ring, {name: ring.symbol(name) for name in symbols})
+    except (NotAlgebraicError, checker.Invalid):
+        return False
+    return not values[lines.results[0][0]].terms
+
+
 def greatest_gain(schedule: Schedule) -> tuple[Fraction, Fraction]:
     """Rationals around the greatest g over the schedule, 1e-12 apart at most; the lower one is attained."""
-    shapes = dict.fromkeys(schedule.profile.shapes)
-    negatives = [poly.scale(shape, Fraction(-1)) for shape in shapes if shape]
-    least = least_value(negatives, WIDTH)
-    return -least.high, -least.low
+    low, high, _ = greatest_gain_at(schedule)
+    return low, high
+
+
+def greatest_gain_at(schedule: Schedule) -> tuple[Fraction, Fraction, Fraction]:
+    """The same, and an instant at which the lower one is attained, s."""
+    first: dict[poly.Coefficients, int] = {}
+    for i, shape in enumerate(schedule.profile.shapes):
+        if shape:
+            first.setdefault(shape, i)
+    if not first:
+        return Fraction(0), Fraction(0), Fraction(0)
+    least = least_value([poly.scale(shape, Fraction(-1)) for shape in first], WIDTH)
+    i, knots = list(first.values())[least.index], schedule.profile.knots
+    return -least.high, -least.low, knots[i] + least.argument * (knots[i + 1] - knots[i])
