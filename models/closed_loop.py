@@ -114,6 +114,11 @@ class ClosedLoop:
             direction[i] = self.time[i + 1]
         return along_state + ca.jtimes(expression, self.time, direction)
 
+    def strays(self, *expressions: Expression) -> list[str]:
+        """Names of the symbols in expressions that are none of the loop's own."""
+        known = {s.element_hash() for s in ca.symvar(ca.veccat(*self.arguments))}
+        return sorted({s.name() for s in ca.symvar(ca.veccat(*expressions)) if s.element_hash() not in known})
+
     def function(self, name: str, *expressions: Expression) -> Any:
         """CasADi function (state, time, parameters, body) -> expressions."""
         return ca.Function(name, list(self.arguments), list(expressions))
@@ -141,13 +146,15 @@ def close_loop(law: Law, saturation: Saturation | None = None) -> ClosedLoop:
     Raises
     ------
     ValueError
-        If the law returns a torque that is not (3,), or not one rate for each controller state.
+        If the law returns a torque that is not (3,), not one rate for each controller state, uses a
+        symbol that it was not given, or gives one name twice.
     """
     b0, bv, w = ca.SX.sym("b0"), ca.SX.sym("bv", 3), ca.SX.sym("w", 3)
     body = ca.SX.sym("body", 12)
     J, inverse = _symmetric(body[:6]), _symmetric(body[6:])
     b0_rate, bv_rate = attitude_rate(b0, bv, w)
     plant = PlantSymbols(b0, bv, w, J, b0_rate, bv_rate)
+    _check_names(law)
     states = {s.name: ca.SX.sym(s.name) for s in law.controller_states}
     parameters = {name: ca.SX.sym(name) for name in law.parameters}
     time = _time_symbols(law)
@@ -158,7 +165,7 @@ def close_loop(law: Law, saturation: Saturation | None = None) -> ClosedLoop:
     Jw_rate = momentum_rate(J, w, torque)
     rates = [control.state_rates[name] for name in states]
     signals = [x for name in time.signals for x in (time.signals[name], time.signal_rates[name])]
-    return ClosedLoop(
+    loop = ClosedLoop(
         law=law,
         saturation=saturation,
         state=ca.vertcat(b0, bv, w, *states.values()),
@@ -174,6 +181,9 @@ def close_loop(law: Law, saturation: Saturation | None = None) -> ClosedLoop:
         momentum_rate=Jw_rate,
         state_rate=ca.vertcat(b0_rate, bv_rate, inverse @ Jw_rate, *rates),
     )
+    if strays := loop.strays(loop.state_rate):
+        raise ValueError(f"law {law.name} uses the symbol {strays[0]}, which is none of those it was given")
+    return loop
 
 
 def _symmetric(entries: Expression) -> Expression:
@@ -192,6 +202,13 @@ def _time_symbols(law: Law) -> TimeSymbols:
         {name: ca.SX.sym(name) for name in names},
         {name: ca.SX.sym(f"{name}_rate") for name in names},
     )
+
+
+def _check_names(law: Law) -> None:
+    names = [*(s.name for s in law.controller_states), *(s.name for s in law.signals), *law.parameters]
+    twice = next((name for i, name in enumerate(names) if name in names[:i]), None)
+    if twice is not None:
+        raise ValueError(f"law {law.name}: two of its states, signals and parameters are called {twice!r}")
 
 
 def _check_control(law: Law, control: Control, states: Mapping[str, Expression]) -> None:

@@ -12,7 +12,8 @@ from ..models.closed_loop import close_loop
 from ..models.laws import Law
 from ..scenario import LawChoice, Scenario
 from ..verify.derivative import SampledDerivative, with_samples
-from ..verify.filter_start import filter_start_claim, follows_filter
+from ..verify.filter_law import follows_filter
+from ..verify.filter_start import filter_start_claim
 from ..verify.floor.claims import torque_quantities
 from ..verify.floor.study import FloorAnswer, answer
 from ..verify.lyapunov.claims import lyapunov_claims

@@ -16,7 +16,8 @@ from ..verify.certificates import Certificate, as_text, certificate_text
 from ..verify.certificates.excitation import excitation_certificate
 from ..verify.certificates.facts import fact_certificate, filter_start_certificate, windows_data
 from ..verify.certificates.program import NotAlgebraicError
-from ..verify.floor.certificate import question_data, schedule_data
+from ..verify.certificates.schedule import schedule_data
+from ..verify.floor.certificate import question_data
 from ..verify.lyapunov import certificates_of
 from ..verify.lyapunov.forms import inertia_data, law_form
 from ..verify.verdict import Claim, Evidence, EvidenceKind, Verdict

@@ -719,8 +719,11 @@ def _momentum_gradient(loop: Loop, storage: Node, outputs: dict[str, Poly], grad
             "J times the momentum gradient is not dV/dy",
         )
         return q
-    numbers = [[entry.terms.get(loop.ring.one, Fraction(0)) for entry in row] for row in loop.J]
-    require(all(len(entry.terms) <= 1 for row in loop.J for entry in row), "J has no inverse in symbols")
+    one = loop.ring.one
+    require(
+        all(entry.terms.keys() <= {one} for row in loop.J for entry in row), "J has no inverse in symbols"
+    )
+    numbers = [[entry.terms.get(one, Fraction(0)) for entry in row] for row in loop.J]
     inverse = [[loop.ring.constant(x) for x in row] for row in inverse_matrix(numbers)]
     return apply(inverse, gradient, loop.ring)
 

@@ -4,13 +4,8 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from ..models.closed_loop import ClosedLoop
-from ..models.laws.scaled import filter_rate
 from ..models.schedule import Schedule
 from ..models.schedule import polynomial as poly
-from . import checker
-from .certificates.program import NotAlgebraicError, write_lines
-from .lyapunov.forms import symbol_names
 from .polynomial_range import least_value
 from .rational_quantity import rational_quantity
 from .verdict import Claim, Evidence, EvidenceKind, Verdict, Witness
@@ -64,23 +59,6 @@ def filter_start_claim(schedule: Schedule, *, decay: Fraction, initial: Fraction
     return Claim(
         key, title, statement, Verdict.REFUTED, (evidence,), (ceiling,), witness=witness, source=SOURCE
     )
-
-
-def follows_filter(loop: ClosedLoop) -> bool:
-    """Whether the law's state R obeys R' = -lambda R + g^2 (1 + b0), as polynomials; its name is no proof."""
-    R, decay = loop.controller_states.get("R"), loop.parameter_symbols.get("lambda")
-    if R is None or decay is None:
-        return False
-    expected = filter_rate(loop.plant, loop.time_symbols, R, decay)
-    symbols = symbol_names(loop)
-    try:
-        lines = write_lines(symbols, [loop.control.state_rates["R"] - expected])
-        ring = checker.Ring(list(symbols))
-        program = checker.Node(list(lines.instructions), "filter")
-        values = checker.run(program, ring, {name: ring.symbol(name) for name in symbols})
-    except (NotAlgebraicError, checker.Invalid):
-        return False
-    return not values[lines.results[0][0]].terms
 
 
 def greatest_gain(schedule: Schedule) -> tuple[Fraction, Fraction]:

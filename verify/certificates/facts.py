@@ -1,19 +1,20 @@
-"""Facts of a schedule and the filter's start as certificates, proved or refuted, for the checker to confirm."""
+"""A schedule's facts and the filter's start as certificates, proved or refuted, as they were decided."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
 from ...models.laws import Law
 from ...models.schedule import Schedule
 from .. import checker
 from ..filter_start import greatest_gain_at
-from ..floor.certificate import schedule_data
 from ..schedule_timeline import Timeline
 from ..verdict import Claim, Verdict
 from .format import Certificate, certificate_text
+from .schedule import schedule_data
 
 COUNTEREXAMPLE = "schedule-counterexample"
 
@@ -75,7 +76,7 @@ def _order(timeline: Timeline) -> Certificate:
 
 def _gaps(schedule: Schedule) -> Iterator[Fraction]:
     windows = schedule.windows
-    for before, after in zip(windows, windows[1:], strict=False):
+    for before, after in pairwise(windows):
         yield after.on - before.off
     if schedule.period is not None:
         yield windows[0].on + schedule.period - windows[-1].off

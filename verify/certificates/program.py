@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from math import isfinite
 from typing import final
 
 import casadi as ca
@@ -43,8 +44,13 @@ def write_lines(symbols: Mapping[str, Expression], results: Sequence[Expression]
     Raises
     ------
     NotAlgebraicError
-        If an expression uses another operation (a root, a sine, a case distinction).
+        If an expression uses another operation (a root, a sine, a case distinction), a constant that
+        is not finite, or a symbol that is none of these.
     """
+    known = {symbol.element_hash() for symbol in symbols.values()}
+    strays = sorted({s.name() for s in ca.symvar(ca.veccat(*results)) if s.element_hash() not in known})
+    if strays:
+        raise NotAlgebraicError(f"the expression uses {', '.join(strays)}, which nothing here defines")
     function = ca.Function("program", list(symbols.values()), list(results))
     program = walk(function)
     strange = sorted(program.operations - OPERATIONS)
@@ -58,6 +64,8 @@ def _lines(program: Program, names: Sequence[str]) -> Lines:
     lines: list[str] = []
     for v, constant in program.constants.items():
         name[v] = f"v{v}"
+        if not isfinite(constant):
+            raise NotAlgebraicError(f"the expression holds the constant {constant}")
         lines.append(f"v{v} = const {exact_text(Fraction(constant))}")
     for step in program.steps:
         name[step.result] = f"v{step.result}"

@@ -17,6 +17,7 @@ from fractions import Fraction
 from typing import final
 
 import casadi as ca
+import numpy as np
 
 from ...models.closed_loop import ClosedLoop
 from ...models.laws import Expression, Law
@@ -40,7 +41,7 @@ class Candidate:
     reference : W, what a rate is stated against
     right_side : what V' should equal identically, or None
     shift : y - w in the coordinate y = w + shift (Omega for the family), (3,)
-    momentum_gradient : q with J q = dV/dw, (3,)
+    momentum_gradient : q with J q = dV/dw, (3,), if there is one that does not depend on J^-1
     floor : the symbol k* = 1/R_min if V has it; the claim is then about R >= R_min
     weight : the symbol a in V if it is free, else None (it is then a parameter of the law, or absent)
     """
@@ -51,7 +52,7 @@ class Candidate:
     reference: Expression
     right_side: Expression | None
     shift: Expression
-    momentum_gradient: Expression
+    momentum_gradient: Expression | None
     floor: Expression | None
     weight: Expression | None
 
@@ -68,7 +69,11 @@ def candidate(loop: ClosedLoop) -> Candidate:
         raise NoStorageError(f"law {loop.law.name} resets its states: a jump of V is not covered by V' <= 0")
     own = loop.law.storage(loop.plant, loop.time_symbols, loop.controller_states, loop.parameter_symbols)
     if own is not None:
-        return _own(loop, own)
+        return _own(loop, ca.SX(own))
+    given = loop.law.parameters
+    for name in ("lambda", "gamma", "a"):
+        if given.get(name, Fraction(1)) <= 0:
+            raise NoStorageError(f"law {loop.law.name}: the family's V needs {name} > 0")
     try:
         return _family(loop)
     except ValueError as error:
@@ -76,11 +81,25 @@ def candidate(loop: ClosedLoop) -> Candidate:
 
 
 def _own(loop: ClosedLoop, value: Expression) -> Candidate:
+    if value.shape != (1, 1):
+        raise NoStorageError(f"law {loop.law.name}: Law.storage must be scalar, received {value.shape}")
+    if strays := loop.strays(value):
+        raise NoStorageError(f"law {loop.law.name}: Law.storage uses the symbol {strays[0]} of its own")
     if ca.depends_on(value, loop.time_symbols.g_rate):
         raise NoStorageError(f"law {loop.law.name}: Law.storage must not use time.g_rate")
     gradient = ca.gradient(value, loop.plant.w)
     unit = ca.substitute(gradient, loop.body[:6], ca.SX([1, 0, 0, 1, 0, 1]))
-    return Candidate(loop, value, None, value, None, _shift(loop), unit, None, None)
+    momentum_gradient = unit if _agree(loop, loop.plant.J @ unit, gradient) else None
+    return Candidate(loop, value, None, value, None, _shift(loop), momentum_gradient, None, None)
+
+
+def _agree(loop: ClosedLoop, left: Expression, right: Expression) -> bool:
+    """Whether two expressions look equal, at one state (what rests on it is checked as polynomials)."""
+    size = sum(argument.numel() for argument in loop.arguments)
+    numbers = ca.DM([1 + (0.618 * i) % 1 for i in range(size)])
+    function = ca.Function("difference", [ca.veccat(*loop.arguments)], [left - right, left])
+    difference, value = (np.array(x) for x in function(numbers))
+    return bool(np.all(np.abs(difference) <= 1e-9 * np.abs(value).max()))
 
 
 def _shift(loop: ClosedLoop) -> Expression:
@@ -92,6 +111,9 @@ def _shift(loop: ClosedLoop) -> Expression:
 
 
 def _family(loop: ClosedLoop) -> Candidate:
+    needed = ["lambda", *(["gamma"] if "k" in loop.controller_states else [])]
+    if missing := [name for name in needed if name not in loop.parameter_symbols]:
+        raise NoStorageError(f"law {loop.law.name} has no parameter {missing[0]}; define Law.storage for it")
     storage = weighted_storage(loop)
     weight, parameters = storage.weight, loop.parameter_symbols
     own_weight = parameters.get("a")

@@ -58,6 +58,13 @@ def sharp_condition(
 ) -> Claim:
     """Claim lambda >= sqrt(a)/(2 sqrt(Jmin)) (key lambda.sharp)."""
     threshold = sharp_threshold(body, weight=weight, tolerance=tolerance)
+    if lam <= 0:
+        violation = rational_quantity("threshold - lambda", Fraction(threshold.low) - lam, unit="1/s")
+        witness = Witness("lambda itself is not positive", {"lambda": float(lam)}, violation)
+        statement = f"lambda = {float(lam):.9g} 1/s is at least {threshold.low:.9g} 1/s"
+        return _claim(
+            "lambda.sharp", statement, Verdict.REFUTED, SHARP, witness=witness, quantities=(threshold,)
+        )
     root = "1/(2 sqrt(Jmin))" if weight == 1 else f"sqrt({float(weight):.6g})/(2 sqrt(Jmin))"
     statement = f"lambda = {float(lam):.9g} 1/s is at least {root}, about {threshold.low:.9g} 1/s"
     found = _refuting(body, tolerance, lambda J: shifted(J, 4 * lam**2, weight), strict=False)
@@ -94,8 +101,10 @@ def sharp_threshold(
     Raises
     ------
     ValueError
-        If the tolerance reaches an inertia that is not positive definite.
+        If the tolerance reaches an inertia that is not positive definite, or the weight is not positive.
     """
+    if weight <= 0:
+        raise ValueError(f"the weight a must be positive, received {float(weight):g}")
     bodies = list(vertices(body.exact_inertia, tolerance))
     if any(negative_direction(J, strict=True) is not None for J in bodies):
         raise ValueError("the tolerance reaches an inertia that is not positive definite")

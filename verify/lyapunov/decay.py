@@ -44,8 +44,8 @@ def derivative_claim(
             reason = str(error)
         else:
             within = "" if bound is None else f", 0 <= g <= {float(bound):.6g}"
-            rho = f"V' <= -rho W with rho = {float(proof.rate):.9g} 1/s{_where(candidate)}{within}"
-            return _proved(key, rho, proof)
+            rho = f"V' <= -rho W with rho = {float(proof.rate):.9g} 1/s" if proof.rate else "V' <= 0"
+            return _proved(key, f"{rho}{_where(candidate)}{within}", proof)
     refutation = _refute(candidate, body, tolerance, weight)
     if refutation is not None:
         return _refuted(key, statement, candidate, refutation, body, tolerance, weight)
@@ -53,6 +53,9 @@ def derivative_claim(
     if theorem:
         return _claim(key, statement, Verdict.PROVED, evidence=theorem)
     search = falsify(candidate, body, schedule=schedule, weight=weight)
+    if search.refutation is not None and candidate.loop.time_symbols.signals:
+        reason = f"V' > 0 at values of {', '.join(candidate.loop.time_symbols.signals)} that may never occur"
+        return _claim(key, statement, Verdict.UNDECIDED, reason=reason)
     if search.refutation is not None:
         return _refuted(key, statement, candidate, search.refutation, body, tolerance, weight)
     return _claim(key, statement, Verdict.UNDECIDED, reason=f"{reason}; {search.summary}")
@@ -124,7 +127,10 @@ def _refute(
     candidate: Candidate, body: RigidBody, tolerance: ExactRows | None, weight: Fraction
 ) -> Refutation | None:
     found = (refute_sign(candidate, J, weight) for J in vertices(body.exact_inertia, tolerance))
-    return next((refutation for refutation in found if refutation is not None), None)
+    try:
+        return next((refutation for refutation in found if refutation is not None), None)
+    except (ArithmeticError, ValueError):  # V' cannot be evaluated without rounding
+        return None
 
 
 def _refuted(

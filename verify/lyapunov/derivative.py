@@ -9,7 +9,7 @@ Only what the checker accepts counts.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, final
 
@@ -70,7 +70,7 @@ def certify_decay(
     weight : Fraction or None
         The weight a where the storage function leaves it free.
     rate : Fraction or None
-        A rate to prove, 1/s; None for the largest.
+        A rate to prove, 1/s; None for the largest, or 0 beside a law's own W that is not seen to be >= 0.
     gain_bound : Fraction or None
         Restrict the claim to 0 <= g <= gain_bound; None claims it for every g.
 
@@ -89,6 +89,8 @@ def certify_decay(
     if gain_bound is not None:
         claim["gain_bound"] = gain_bound
     vertices = list(_targets(data, claim, gain_bound))
+    if candidate.right_side is None and rate is None and not _is_nonnegative_reference(vertices):
+        rate = Fraction(0)  # beside a W that may be negative a rate would say nothing
     best = _best_rate(vertices) if rate is None else float(rate)
     if best is None:
         raise NoCertificateError("-V' was not found to be a sum of squares of its own degree on the sphere")
@@ -131,6 +133,13 @@ def _best_rate(problems: list[Problem]) -> float | None:
         bounds = [found.bound(targets) for _, targets in problems]
         where = bounds.index(min(bounds))
     return max(best, 0.0)
+
+
+def _is_nonnegative_reference(problems: list[Problem]) -> bool:
+    """Whether W is a sum of squares, exactly, and not zero: only then does V' <= -rho W bound V' by more."""
+    targets = [(ring, target) for ring, problem in problems for target in problem if target.reference]
+    alone = ((ring, replace(t, fixed=t.reference, reference={})) for ring, t in targets)
+    return bool(targets) and all(find_gram(ring, t, Fraction(0), None) is not None for ring, t in alone)
 
 
 def _rates(best: float) -> Iterator[Fraction]:

@@ -136,8 +136,7 @@ class ExactDerivative:
     def __init__(self, candidate: Candidate, inertia: ExactRows, *, weight: Fraction = Fraction(1)) -> None:
         loop = candidate.loop
         self._loop, self._weight = loop, weight
-        rate = candidate.derivative
-        rate = loop.total_derivative(candidate.value) if rate is None else rate
+        rate = loop.total_derivative(candidate.value)  # by J^-1: a law's own word on kappa' is no evidence
         right = ca.SX.nan() if candidate.right_side is None else candidate.right_side
         self._has_right = candidate.right_side is not None
         extra = [x if x is not None else ca.SX.sym("unused") for x in (candidate.floor, candidate.weight)]

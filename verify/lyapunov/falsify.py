@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from ...models.closed_loop import body_values
 from ...models.laws import Expression
-from ...models.lowering import UnknownOperationError, evaluate
+from ...models.lowering import evaluate
 from ...models.rigid_body import RigidBody
 from ...models.schedule import Schedule
 from ..verdict import Witness
@@ -28,7 +28,6 @@ from .candidates import Candidate
 from .exact_states import (
     EXACT,
     ExactState,
-    IrrationalError,
     loop_arguments,
     near,
     program_of,
@@ -161,6 +160,8 @@ class _Search:
         """Search one piece of g."""
         from scipy.optimize import minimize
 
+        if len(coefficients) > DEGREE + 1:  # searched by its first terms; a violation is evaluated exactly
+            coefficients = coefficients[: DEGREE + 1]
         padded = np.zeros(DEGREE + 1)
         padded[: len(coefficients)] = [float(c) for c in coefficients]
         low, high = self._bounds(float(length))
@@ -203,7 +204,7 @@ class _Search:
         J = [list(row) for row in self._body.exact_inertia]
         try:
             found = at_state(self._candidate, J, self._weight, self._exact_state(z, coefficients))
-        except (IrrationalError, UnknownOperationError, ZeroDivisionError) as error:
+        except (ArithmeticError, ValueError) as error:
             return None, f"V' > 0 was seen in floats but could not be evaluated exactly: {error}"
         if found is None:
             return None, "V' > 0 was seen in floats but not at the rational state beside it"

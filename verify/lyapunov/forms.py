@@ -73,7 +73,8 @@ def storage_form(
     if candidate.weight is not None:
         symbols[WEIGHT] = candidate.weight
     other: Expression = candidate.right_side if identity else candidate.reference
-    lines = write_lines(symbols, [candidate.value, other, candidate.momentum_gradient])
+    momentum = candidate.momentum_gradient
+    lines = write_lines(symbols, [candidate.value, other, *([] if momentum is None else [momentum])])
     shift = write_lines({k: v for k, v in symbols.items() if k not in PLANT_STATES[4:]}, [candidate.shift])
     form: dict[str, Any] = {
         "shift_program": list(shift.instructions),
@@ -81,8 +82,9 @@ def storage_form(
         "program": list(lines.instructions),
         "value": lines.results[0][0],
         "right_side" if identity else "reference": lines.results[1][0],
-        "momentum_gradient": list(lines.results[2]),
     }
+    if momentum is not None:
+        form["momentum_gradient"] = list(lines.results[2])
     if candidate.weight is not None and weight is not None:
         form["weight"] = weight
     return form
