@@ -36,6 +36,8 @@ def test_what_the_sequence_does_not_have_is_refused():
         SobolRows(len(PRIMITIVE) + 1, seed=1, block=8)
     with pytest.raises(ValueError, match="power of 2"):
         SobolRows(3, seed=1, block=12)
+    with pytest.raises(ValueError, match=r"2\^30 distinct points"):
+        Sampling(count=2**30 + 1)
 
 
 def test_states_are_unit_quaternions_in_the_stated_box_even_where_the_half_angle_is_right():

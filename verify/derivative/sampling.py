@@ -19,7 +19,7 @@ from ...models.rigid_body import RigidBody
 from .domain import SampledDomain
 from .function import DerivativeFunction
 from .search import Refinement, refine
-from .sobol import PRIMITIVE, SobolRows
+from .sobol import BITS, PRIMITIVE, SobolRows
 
 Array = NDArray[np.float64]
 Progress = Callable[[float], None]
@@ -44,6 +44,8 @@ class Sampling:
     def __post_init__(self) -> None:
         if self.count < 1 or self.seed < 0:
             raise ValueError(f"expected count >= 1 and seed >= 0, received {self.count} and {self.seed}")
+        if self.count > 1 << BITS:
+            raise ValueError(f"the Sobol sequence has 2^{BITS} distinct points, {self.count} were asked for")
 
 
 @final
