@@ -18,7 +18,7 @@ from ..verify.floor.claims import torque_quantities
 from ..verify.floor.study import FloorAnswer, answer
 from ..verify.lyapunov.claims import lyapunov_claims
 from ..verify.torque_excess import refuted_limit
-from ..verify.verdict import Claim, Verdict
+from ..verify.verdict import Claim, Quantity, Verdict
 from .curves import CertifiedCurves, certified_curves
 from .floor import floor_question, is_certified
 from .keys import CLAIM_KEYS, order_of
@@ -83,10 +83,32 @@ class Case:
     run: Run | None
 
 
-def find(
+@final
+@dataclass(frozen=True)
+class Decided:
+    """What exact means decide about one law, and what the parts that follow need of it.
+
+    Attributes
+    ----------
+    claims : without margins and samples
+    has_margins : whether convergence is proved, so that its margins may be looked for
+    """
+
+    claims: tuple[Claim, ...]
+    reference_floor: Fraction | None
+    curves: CertifiedCurves | None
+    note: str
+    has_margins: bool
+
+
+Sampled = tuple[SampledDerivative | None, str]
+"""Samples of V', or the reason why there are none."""
+
+
+def decide(
     scenario: Scenario, choice: LawChoice, seen: Seen, options: CaseOptions, progress: Progress | None = None
-) -> Findings:
-    """Decide every claim about one law; `seen` is what its run showed."""
+) -> Decided:
+    """Decide every claim about one law; `seen` is what its run showed. Margins and samples come after it."""
     tell = progress if progress is not None else _silent
     law = choice.build()
     tell("V' as a polynomial", 0.0)
@@ -105,23 +127,40 @@ def find(
         claims[limit.key] = refuted_limit(
             limit, question, quaternion=start.attitude, rate=start.exact_rate, at=seen.excess_at
         )
-    if options.margins and claims["convergence"].verdict is Verdict.PROVED:
-        tell("margins of convergence", 0.6)
-        quantities = tuple(convergence_margins(scenario, choice, partial(is_certified, question)))
-        claims["convergence"] = with_margins(claims["convergence"], quantities)
-    tell("samples of V'", 0.8)
-    floor = reference_floor(scenario, law, claims.get("filter.floor"), seen)
-    samples, why_not = sample_law(scenario, law, floor, lambda done: tell("samples of V'", 0.8 + 0.2 * done))
-    if samples is not None:
-        _add_samples(claims, samples)
-    ordered = tuple(sorted(claims.values(), key=lambda claim: order_of(claim.key)))
-    curves = certified_curves(found.floor, float(scenario.horizon)) if found.floor is not None else None
-    told = (
+    return Decided(
+        tuple(claims.values()),
+        reference_floor(scenario, law, claims.get("filter.floor"), seen),
+        certified_curves(found.floor, float(scenario.horizon)) if found.floor is not None else None,
         floor_note(scenario.schedule, found.converged),
-        f"V' was not sampled: {why_not}" if why_not else "",
+        options.margins and claims["convergence"].verdict is Verdict.PROVED,
     )
+
+
+def margins(scenario: Scenario, choice: LawChoice) -> tuple[Quantity, ...]:
+    """How far schedule and lambda may change while convergence stays certified."""
+    question = floor_question(scenario, choice.build(), Seen(), search=False)
+    return tuple(convergence_margins(scenario, choice, partial(is_certified, question)))
+
+
+def samples(
+    scenario: Scenario, choice: LawChoice, floor: Fraction | None, progress: Callable[[float], None]
+) -> Sampled:
+    """Samples of V' with k* = 1/floor."""
+    return sample_law(scenario, choice.build(), floor, progress)
+
+
+def findings(decided: Decided, margins: tuple[Quantity, ...], sampled: Sampled) -> Findings:
+    """Put margins and samples under the claims they belong to."""
+    claims = {claim.key: claim for claim in decided.claims}
+    if margins:
+        claims["convergence"] = with_margins(claims["convergence"], margins)
+    found, why_not = sampled
+    if found is not None:
+        _add_samples(claims, found)
+    ordered = tuple(sorted(claims.values(), key=lambda claim: order_of(claim.key)))
+    told = (decided.note, f"V' was not sampled: {why_not}" if why_not else "")
     notes = tuple(note for note in told if note)
-    return Findings(ordered, floor, curves, samples, notes)
+    return Findings(ordered, decided.reference_floor, decided.curves, found, notes)
 
 
 def decided_claims(scenario: Scenario, law: Law) -> tuple[Claim, ...]:

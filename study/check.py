@@ -12,7 +12,7 @@ from ..verify.schedule_facts import schedule_claims
 from ..verify.verdict import Claim
 from .case import Case, CaseOptions
 from .counting import count, counted_keys, exit_code, sentence
-from .jobs import find_all
+from .jobs import crew
 from .run import run_law, seen_in
 
 Progress = Callable[[str, float], None]
@@ -85,13 +85,14 @@ def run_check(
     tell("schedule", 0.0)
     schedule = count(scenario_claims(scenario), scenario)
     wanted = CaseOptions(margins=options.margins, search=options.search)
-    runs, jobs = [], []
-    for choice in scenario.laws:
-        tell(f"{choice.label}: simulation", 0.05)
-        run = run_law(scenario, choice.build()) if options.simulate else None
-        runs.append(run)
-        jobs.append((scenario, choice, seen_in(scenario, run), wanted))
-    findings = find_all(jobs, options.workers, tell)
+    runs = []
+    with crew(len(scenario.laws), options.workers, tell) as workers:
+        for choice in scenario.laws:
+            tell(f"{choice.label}: simulation", 0.05)
+            run = run_law(scenario, choice.build()) if options.simulate else None
+            runs.append(run)
+            workers.add(scenario, choice, seen_in(scenario, run), wanted)
+        findings = workers.findings()
     cases = (
         Case(choice, found, count(found.claims, scenario), run)
         for choice, found, run in zip(scenario.laws, findings, runs, strict=True)
