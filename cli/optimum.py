@@ -31,6 +31,9 @@ def run(
     least_time: Annotated[
         bool, typer.Option("--least-time", help="Find the least transfer time within the torque limit too.")
     ] = False,
+    least_impulse: Annotated[
+        bool, typer.Option("--least-impulse", help="Find the least impulse within the torque limit too.")
+    ] = False,
     debug: Debug = False,
 ) -> int:
     """Find the least peak torque any controller could do with through the windows."""
@@ -49,7 +52,13 @@ def run(
         if key not in norms:
             raise InputError(f"--norm {key}: expected component, euclidean or thrusters")
     options = OptimumOptions(
-        norms=norms, starts=starts, seed=seed, solver=solver, bound=bound, least_time=least_time
+        norms=norms,
+        starts=starts,
+        seed=seed,
+        solver=solver,
+        bound=bound,
+        least_time=least_time,
+        least_impulse=least_impulse,
     )
     with progress(loaded.name) as step:
         study = run_optimum(loaded, options, step)

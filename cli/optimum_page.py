@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from ..optim.peak import Standing
 from ..reports.numbers import write
 from ..reports.parts import quantity
-from ..study.optimum_record import least_time_words, residuals, terminal_words
+from ..study.optimum_record import least_impulse_words, least_time_words, residuals, terminal_words
 from .claim_tables import plain_table
 
 if TYPE_CHECKING:
@@ -98,6 +98,8 @@ def _details(console: Console, optimum: Optimum) -> None:
         console.print(f"  limit {optimum.limit:g} {unit} {word}")
     if optimum.least_time is not None:
         console.print(f"  {least_time_words(optimum.least_time)}")
+    if optimum.least_impulse is not None:
+        console.print(f"  {least_impulse_words(optimum.least_impulse)}")
     if optimum.bound is not None:
         console.print(f"  certified bound from: {optimum.bound.name}")
     if answer.history is not None:

@@ -20,6 +20,7 @@ _EXPORTS = {
     "ThrusterAxes": ".norms",
     "TransferProblem": ".problem",
     "WindowProfile": ".problem",
+    "minimum_impulse": ".peak",
     "minimum_peak": ".peak",
     "minimum_time": ".peak",
 }

@@ -49,6 +49,10 @@ class Norm(ABC):
         """Effort of a control v, shape (..., m) -> (...); never below `peak(B v)`."""
 
     @abstractmethod
+    def consumption(self, control: ArrayLike) -> Array:
+        """Impulse spent each second by a control v, shape (..., m) -> (...): what the propellant pays for."""
+
+    @abstractmethod
     def support(self, direction: ArrayLike) -> Array:
         """Largest direction . torque over torques of unit effort, shape (..., 3) -> (...)."""
 
@@ -85,6 +89,10 @@ class Euclidean(_OfTheTorque):
         """Euclidean length."""
         return np.asarray(np.linalg.norm(np.asarray(torque, dtype=float), axis=-1))
 
+    def consumption(self, control: ArrayLike) -> Array:
+        """Euclidean length."""
+        return self.peak(control)
+
     def support(self, direction: ArrayLike) -> Array:
         """Euclidean length (the ball is its own polar)."""
         return self.peak(direction)
@@ -103,6 +111,10 @@ class LargestComponent(_OfTheTorque):
     def peak(self, torque: ArrayLike) -> Array:
         """Largest absolute component."""
         return np.asarray(np.abs(np.asarray(torque, dtype=float)).max(axis=-1))
+
+    def consumption(self, control: ArrayLike) -> Array:
+        """Sum of absolute components: each axis has thrusters of its own."""
+        return np.asarray(np.abs(np.asarray(control, dtype=float)).sum(axis=-1))
 
     def support(self, direction: ArrayLike) -> Array:
         """Sum of absolute components (polar of the cube)."""
@@ -185,6 +197,10 @@ class ThrusterAxes(Norm):
         """Largest force; inf if a force is negative (thrust is one-sided)."""
         force = np.asarray(control, dtype=float)
         return np.where(force.min(axis=-1) < 0.0, np.inf, force.max(axis=-1))
+
+    def consumption(self, control: ArrayLike) -> Array:
+        """Sum of the forces."""
+        return np.asarray(np.asarray(control, dtype=float).sum(axis=-1))
 
     def support(self, direction: ArrayLike) -> Array:
         """Sum over the thrusters of the positive part of direction . axis."""

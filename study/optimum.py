@@ -13,7 +13,7 @@ from ..scenario import Scenario
 
 if TYPE_CHECKING:
     from ..optim.bounds import LowerBound
-    from ..optim.peak import LeastTime, PeakAnswer
+    from ..optim.peak import LeastImpulseFound, LeastTime, PeakAnswer
     from ..optim.peak.explain import Explanation
     from ..optim.peak.options import LocalSolver
 
@@ -40,7 +40,7 @@ class OptimumOptions:
     solver : "auto" is the fast one with the reference as fallback
     mesh_gap : largest fraction of the peak that finer cells may still gain
     bound : compute the certified lower bound beside each optimum
-    least_time : find the least transfer time within the limit too, where one is given
+    least_time, least_impulse : find the least transfer time, the least impulse, within the limit too
     """
 
     norms: tuple[NormKey, ...] = ()
@@ -50,6 +50,7 @@ class OptimumOptions:
     mesh_gap: float = 1e-6
     bound: bool = True
     least_time: bool = False
+    least_impulse: bool = False
 
 
 @final
@@ -64,7 +65,7 @@ class Optimum:
     limit : the torque (or force) limit given for this norm, its unit, or None
     hopeless : why the limit cannot be met by any controller, or None
     bound : certified lower bound, computed apart from the answer; None where there is none
-    least_time : least transfer time within the limit; None if not asked for
+    least_time, least_impulse : within the limit; None if not asked for
     """
 
     key: NormKey
@@ -74,6 +75,7 @@ class Optimum:
     hopeless: Explanation | None
     bound: LowerBound | None = None
     least_time: LeastTime | None = None
+    least_impulse: LeastImpulseFound | None = None
 
     @property
     def gap(self) -> float | None:
@@ -133,7 +135,7 @@ def run_optimum(
     scenario: Scenario, options: OptimumOptions | None = None, progress: Progress | None = None
 ) -> OptimumStudy:
     """Find the least peak of the scenario's transfer in each norm."""
-    from ..optim.peak import MultiStart, Refinement, minimum_peak, minimum_time
+    from ..optim.peak import MultiStart, Refinement, minimum_impulse, minimum_peak, minimum_time
     from ..optim.peak.explain import explain
 
     options = options if options is not None else OptimumOptions()
@@ -145,6 +147,7 @@ def run_optimum(
     )
     refinement, quick = Refinement(mesh_gap=options.mesh_gap), Refinement(mesh_gap=1e-5)
     keys, optima = norm_keys(scenario, options), []
+    _needs_a_limit(scenario, options, keys)
     for i, key in enumerate(keys):
         tell(f"optimum, {key}", i / len(keys))
         problem = transfer(scenario, norm_of(scenario, key))
@@ -156,9 +159,32 @@ def run_optimum(
         if options.least_time and limit is not None and hopeless is None:
             tell(f"least time, {key}", (i + 0.5) / len(keys))
             least = minimum_time(problem, limit, search=replace(search, starts=1), refinement=quick)
-        optima.append(Optimum(key, problem, answer, limit, hopeless, bound, least))
+        spent = None
+        if options.least_impulse and limit is not None and hopeless is None:
+            tell(f"least impulse, {key}", (i + 0.8) / len(keys))
+            spent = minimum_impulse(problem, limit, search=search)
+        optima.append(Optimum(key, problem, answer, limit, hopeless, bound, least, spent))
     tell("done", 1.0)
     return OptimumStudy(scenario, options, tuple(optima))
+
+
+def _needs_a_limit(scenario: Scenario, options: OptimumOptions, keys: tuple[NormKey, ...]) -> None:
+    """Refuse a question within a limit where no limit is given for any norm.
+
+    Raises
+    ------
+    ScenarioError
+        Naming the key that is missing.
+    """
+    from ..scenario import ScenarioError
+
+    asked = [name for name in ("least_time", "least_impulse") if getattr(options, name)]
+    if asked and all(limit_of(scenario, key) is None for key in keys):
+        words = " and ".join(name.replace("_", " ") for name in asked)
+        raise ScenarioError(
+            f"{scenario.path.name}: optimum.torque_limit",
+            f"is needed for the {words} (norm {', '.join(keys)})",
+        )
 
 
 def norm_keys(scenario: Scenario, options: OptimumOptions) -> tuple[NormKey, ...]:
@@ -239,10 +265,7 @@ def _bound(problem: TransferProblem, answer: PeakAnswer, options: OptimumOptions
 
     if not options.bound or answer.history is None:
         return None
-    try:
-        bound = certified_lower_bound(problem)
-    except NotImplementedError:
-        return None
+    bound = certified_lower_bound(problem)
     if answer.standing is Standing.CHECKED and bound.value > answer.peak * (1.0 + INVERSION_ALLOWANCE):
         raise BoundInversionError(
             f"the optimum found, {answer.peak:.9g} {bound.unit}, lies below its certified bound "

@@ -14,7 +14,7 @@ from .check_record import scenario_entry
 from .optimum import Optimum, OptimumStudy
 
 if TYPE_CHECKING:
-    from ..optim.peak import LeastTime, Switching, TorqueHistory
+    from ..optim.peak import LeastImpulseFound, LeastTime, Switching, TorqueHistory
 
 Array = NDArray[np.float64]
 
@@ -96,12 +96,28 @@ def optimum_entry(study: OptimumStudy, optimum: Optimum) -> tuple[dict[str, Any]
 
 def least_time_words(least: LeastTime) -> str:
     """The least time found and the latest at which none was, in words."""
+    limit = f"{least.limit:g} {least.answer.problem.norm.unit}"
     if least.time is None:
-        return f"no transfer within {least.limit:g} was found by {float(least.earlier):g} s"
+        return f"no transfer within {limit} was found by {float(least.earlier):g} s"
     return (
-        f"least time within {least.limit:g}: {float(least.time):.6g} s "
+        f"least time within {limit}: {float(least.time):.6g} s "
         f"(none found by {float(least.earlier):.6g} s; {least.solves} least peaks solved)"
     )
+
+
+def least_impulse_words(least: LeastImpulseFound) -> str:
+    """The least impulse found and what was checked of it, in words."""
+    answer, unit = least.answer, least.answer.problem.norm.unit
+    if not least.found:
+        return f"no transfer within {least.limit:g} {unit} was found, so none of least impulse"
+    said = (
+        f"least impulse within {least.limit:g} {unit}: {least.impulse:.6g} {unit} s "
+        f"({answer.standing.value}; missed at the end by {answer.flown.terminal_excess:.1e} rad, "
+        f"optimality gap {answer.optimality_gap:.1e}, finer cells gain {answer.mesh_gap:.1e})"
+        if answer.flown is not None
+        else ""
+    )
+    return f"{said}: {answer.reason}" if answer.reason else said
 
 
 def _lower(name: str, value: float, unit: str) -> dict[str, Any]:
@@ -150,6 +166,9 @@ def notes(optimum: Optimum) -> list[str]:
         said.append(f"Limit: {optimum.hopeless.reason}. Next step: {optimum.hopeless.next_step}.")
     if optimum.least_time is not None:
         said.append(least_time_words(optimum.least_time).capitalize() + ".")
+    if optimum.least_impulse is not None:
+        words = least_impulse_words(optimum.least_impulse)
+        said.append(words[0].upper() + words[1:] + ".")
     if answer.history is not None:
         said.append("The best of the starts: an upper bound on the least peak, local optimality checked.")
     return said

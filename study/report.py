@@ -63,25 +63,12 @@ def run_report(
 
         records.append(optimum_record(run_optimum(scenario, OptimumOptions(), _part(tell, 0.6, 0.8))))
     if options.comparison:
+        from .compare import comparison_record, run_comparison
+
         tell("comparison", 0.8)
-        records.append(_comparison(scenario, records[0]))
+        records.append(comparison_record(run_comparison(scenario)))
     tell("done", 1.0)
     return join(records, title=scenario.name, command=command, date=date, author=author)
-
-
-def _comparison(scenario: Scenario, check: Record) -> Record:
-    """Each law against its optimum; a note in its place where no certified bound covers the norm."""
-    from .compare import comparison_record, run_comparison
-
-    try:
-        return comparison_record(run_comparison(scenario))
-    except NotImplementedError as error:
-        note = f"The comparison is left out: there is no certified bound for the norm {str(error)!r}."
-        return Record.create(
-            title="comparison",
-            provenance=check.document["provenance"],
-            sections={"appendix": {"notes": [note]}},
-        )
 
 
 def _part(tell: Progress, start: float, end: float) -> Progress:

@@ -2,6 +2,7 @@
 
 from .any_torque import FlownTorque, fly_torque
 from .history import TorqueHistory
+from .minimum_impulse import LeastImpulseFound, minimum_impulse
 from .minimum_peak import minimum_peak
 from .minimum_time import LeastTime, minimum_time
 from .nlp import NonlinearProgram
@@ -13,6 +14,7 @@ from .verify_answer import FlownHistory, fly_again
 __all__ = [
     "FlownHistory",
     "FlownTorque",
+    "LeastImpulseFound",
     "LeastTime",
     "MultiStart",
     "NonlinearProgram",
@@ -26,6 +28,7 @@ __all__ = [
     "TorqueHistory",
     "fly_again",
     "fly_torque",
+    "minimum_impulse",
     "minimum_peak",
     "minimum_time",
 ]

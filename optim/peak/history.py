@@ -53,10 +53,10 @@ class TorqueHistory:
 
     @cached_property
     def impulse(self) -> float:
-        """Integral of the effort, w effort(control), over the transfer: N m s (N s for thrusters)."""
+        """Integral of w consumption(control) over the transfer: N m s (N s for thrusters)."""
         share = self.profile @ (1.0 / np.arange(1, self.profile.shape[1] + 1))
-        effort = np.where(self.open, self.norm.effort(self.control), 0.0)
-        return float((np.diff(self.edges) * share * effort).sum())
+        spent = np.where(self.open, self.norm.consumption(self.control), 0.0)
+        return float((np.diff(self.edges) * share * spent).sum())
 
     def torque(self, t: ArrayLike) -> Array:
         """Torque at times t (...,) in s, (..., 3), N m; at an edge that of the cell after it."""

@@ -4,25 +4,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from typing import final
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..problem import TransferProblem
-from .assemble import Effort, at_rest_already, checked, without_history
+from .assemble import at_rest_already, without_history
 from .explain import arrives_by_itself, explain
+from .finish import Finish
 from .guess import bend, control_at, first_guess
 from .mesh import Mesh, build_mesh
-from .nlp import NonlinearProgram
 from .options import LocalSolver, MultiStart, Refinement
-from .refine import refined, smoothed
 from .result import PeakAnswer, Search, Standing, Start
 from .scaling import ScaledProblem, scale
 from .scp import LocalAnswer, SequentialConvex
 from .shooting import Shooting
-from .switching import switching_function
 
 Array = NDArray[np.float64]
 
@@ -85,7 +82,7 @@ def minimum_peak(
         return without_history(problem, standing, nothing.reason, nothing.next_step)
     if arrives_by_itself(problem):
         return at_rest_already(problem)
-    active = _until_last_window(problem)
+    active = until_last_window(problem)
     scaled = scale(active)
     mesh = coarse_mesh(active, refinement.cells)
     candidates, record = _search(scaled, mesh, fast, search, near)
@@ -99,7 +96,7 @@ def minimum_peak(
             ),
             search=record,
         )
-    finish = _Finish(problem, fast, solver is None, refinement, record)
+    finish = Finish(problem, fast, solver is None, refinement, record)
     first = finish(candidates[0])
     if first.standing is Standing.CHECKED:
         return first
@@ -107,7 +104,7 @@ def minimum_peak(
     return next((other for other in others if other.standing is Standing.CHECKED), first)
 
 
-def _until_last_window(problem: TransferProblem) -> TransferProblem:
+def until_last_window(problem: TransferProblem) -> TransferProblem:
     """The same transfer without the time after its last window, if it must end at rest.
 
     Without torque |J w| is constant, so a body at rest at the end is at rest since the last window.
@@ -156,44 +153,3 @@ def _starts(
                 continue
             seed = search.seed + number - 1
             yield sign, seed, bend(shooting, control, np.random.default_rng([seed, sign + 1]), search.bend)
-
-
-@final
-@dataclass(frozen=True)
-class _Finish:
-    """Refines one local optimum to the mesh gap, then checks it against the problem as stated."""
-
-    problem: TransferProblem
-    solver: LocalSolver
-    may_fall_back: bool
-    refinement: Refinement
-    record: Search
-
-    def __call__(self, candidate: LocalAnswer) -> PeakAnswer:
-        local, rounds, total, solver = candidate, 0, candidate.iterations, self.solver
-        sigma = switching_function(local)
-        shooting, control = local.shooting, local.flight.control
-        while rounds < self.refinement.max_rounds:
-            rounds += 1
-            local = solver.solve(shooting, control)
-            total += local.iterations
-            if not local.converged and self.may_fall_back and solver is self.solver:
-                # what the fast solver finds hard on one mesh it finds hard on a finer one
-                solver, local = NonlinearProgram(), _fall_back(local)
-            sigma = switching_function(local)
-            rough = smoothed(local, self.refinement.step_error)
-            if rough is not None:
-                shooting, control = rough
-            elif sigma.total_loss > self.refinement.mesh_gap:
-                shooting, control = refined(sigma, self.refinement.mesh_gap)
-            else:
-                break
-        effort = Effort(solver.name, total, rounds)
-        return checked(self.problem, local, sigma, self.refinement, self.record, effort)
-
-
-def _fall_back(local: LocalAnswer) -> LocalAnswer:
-    """Nonlinear program from where the fast solver stopped; whichever answer is better converged."""
-    other = NonlinearProgram().solve(local.shooting, local.flight.control)
-    better = other.violation <= 1e-8 and other.gap < local.gap
-    return other if better else local

@@ -40,8 +40,15 @@ def dual_value(
     if total <= 0.0:
         return 0.0, np.zeros(6)
     y = multiplier / total
+    return linearised_offset(shooting, flight, sensitivity, y), y
+
+
+def linearised_offset(
+    shooting: Shooting, flight: Flight, sensitivity: Sensitivity, multiplier: Array
+) -> float:
+    """Return y . (r - G v) - tolerance . |y|: what a multiplier makes of the terminal rows alone."""
     offset = flight.residual - np.einsum("ikm,km->i", sensitivity.terminal, flight.control)
-    value = float(y @ offset)
+    value = float(multiplier @ offset)
     for block, tolerance in enumerate(shooting.tolerances):
-        value -= tolerance * float(np.linalg.norm(y[3 * block : 3 * block + 3]))
-    return value, y
+        value -= tolerance * float(np.linalg.norm(multiplier[3 * block : 3 * block + 3]))
+    return value

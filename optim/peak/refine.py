@@ -1,6 +1,6 @@
 """Refinement: cut the cells where a constant control loses, until what is left to gain is negligible.
 
-Cells in which a component switches are cut at the switch; cells in which the best torque
+Cells in which a component switches are cut close to it on both sides; cells in which the best torque
 turns are cut into equal parts, shared out so that the total loss meets the target with the
 fewest cells.
 """
@@ -19,6 +19,8 @@ from .switching import SwitchingFunction, switch_points
 Array = NDArray[np.float64]
 LONGEST_CUT = 6
 """A cell is cut into at most this many parts in one round: the estimate is local."""
+BRACKET = 0.05
+"""Half of the cell left around a switch, as a fraction of the cell it was found in."""
 
 
 def refined(sigma: SwitchingFunction, target: float) -> tuple[Shooting, Array]:
@@ -44,9 +46,19 @@ def _cuts(sigma: SwitchingFunction, cell: int, parts: int, target: float) -> lis
     switches = [s for s in switch_points(sigma, cell) if 1e-3 < s < 1 - 1e-3]
     norm = sigma.answer.shooting.scaled.problem.norm
     if switches and not isinstance(norm, Euclidean):
-        return _apart(switches)
+        return _apart(_bracketed(switches))
     equal = [j / parts for j in range(1, parts)]
     return _apart(sorted(equal + switches))
+
+
+def _bracketed(switches: list[float]) -> list[float]:
+    """Cuts on both sides of each switch: where its place is not quite known yet, it is in a short cell.
+
+    A switch inside a cell of length h loses in proportion to h^2, so that a bracket shrinks the
+    loss as much as the place is known; a cut at the place itself leaves the error times a long cell.
+    """
+    around = sorted(s + d for s in switches for d in (-BRACKET, BRACKET))
+    return [s for s in around if 1e-2 < s < 1 - 1e-2]
 
 
 def _apart(points: list[float]) -> list[float]:

@@ -143,7 +143,7 @@ class PeakAnswer:
 
     @property
     def impulse(self) -> float:
-        """Integral of the effort of the returned history."""
+        """Integral of the consumption of the returned history: length, sum of axes or of forces."""
         return self.history.impulse if self.history is not None else float("nan")
 
     @property

@@ -2,20 +2,20 @@
 
 Every iterate is a real flight (states are integrated, not variables), so that only six terminal
 rows are linearised. A proximal term holds the step where the linearisation is trusted; the
-merit peak + penalty * violation decides acceptance. At convergence the step is zero, so the
+merit value + penalty * violation decides acceptance. At convergence the step is zero, so the
 term leaves no trace in the answer.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .curvature import Curvature, lagrangian_curvature
-from .optimality import dual_value
+from .goal import Goal, LeastPeak
 from .shooting import Flight, Sensitivity, Shooting
 from .subproblem import ConeProgram, ConvexStep, Linearisation
 
@@ -35,6 +35,8 @@ class LocalAnswer:
     ----------
     multiplier : (6,)
         Of the terminal residual, normalised as in `optimality`.
+    value : float
+        What was made least: the peak, or the mean consumption over the window time.
     gap : float
         Relative duality gap of the linearised problem at the flight.
     reason : str
@@ -45,10 +47,21 @@ class LocalAnswer:
     flight: Flight
     sensitivity: Sensitivity
     multiplier: Array
-    peak: float
+    value: float
     gap: float
     iterations: int
     reason: str = ""
+    goal: Goal = field(default_factory=LeastPeak)
+
+    @property
+    def peak(self) -> float:
+        """Largest effort of the control."""
+        return float(self.shooting.scaled.problem.norm.effort(self.flight.control).max())
+
+    @property
+    def level(self) -> float:
+        """Effort of a control that pushes as hard as it may."""
+        return self.goal.level(self.value)
 
     @property
     def converged(self) -> bool:
@@ -91,17 +104,27 @@ class SequentialConvex:
         if self.max_iterations < 1:
             raise ValueError(f"max_iterations must be >= 1, received {self.max_iterations}")
 
-    def solve(self, shooting: Shooting, control: Array, *, tolerance: float | None = None) -> LocalAnswer:
-        """Improve a control until it is feasible and locally optimal, or say why not."""
-        loop = _Loop(shooting, control, self.damping)
-        goal = self.tolerance if tolerance is None else tolerance
+    def solve(
+        self,
+        shooting: Shooting,
+        control: Array,
+        *,
+        tolerance: float | None = None,
+        goal: Goal | None = None,
+    ) -> LocalAnswer:
+        """Improve a control until it is feasible and locally optimal, or say why not.
+
+        The goal is the least peak unless another is given.
+        """
+        loop = _Loop(shooting, control, self.damping, goal or LeastPeak())
+        standard = self.tolerance if tolerance is None else tolerance
         reason = f"no convergence in {self.max_iterations} convex programs"
         while loop.iterations < self.max_iterations:
             if not loop.advance():
                 reason = "no step of the convex program lowers the merit"
                 break
             slack = SLOW_SLACK if loop.iterations > 3 * SLOW else 1.0
-            if loop.gap <= slack * goal and loop.violation <= goal:
+            if loop.gap <= slack * standard and loop.violation <= standard:
                 reason = ""
                 break
         return loop.answer(reason)
@@ -111,13 +134,13 @@ class SequentialConvex:
 class _Loop:
     """State of one run: the flight, its sensitivity, and how far the linearisation is trusted."""
 
-    def __init__(self, shooting: Shooting, control: Array, damping: float) -> None:
-        self.shooting, self.norm = shooting, shooting.scaled.problem.norm
+    def __init__(self, shooting: Shooting, control: Array, damping: float, goal: Goal) -> None:
+        self.shooting, self.goal, norm = shooting, goal, shooting.scaled.problem.norm
         self.flight = shooting.fly(control)
         self.size = reference_control(shooting, self.flight)
-        self.program = ConeProgram(self.norm, shooting.cells, shooting.weights, shooting.tolerances)
+        self.program = ConeProgram(goal, self.size, norm, shooting.weights, shooting.tolerances)
         self.sensitivity = shooting.sensitivity(self.flight)
-        self.peak = float(self.norm.effort(self.flight.control).max())
+        self.value = goal.value(shooting, self.flight.control)
         self.damping, self.penalty = damping, 10.0
         self.multiplier, self.gap = np.zeros(6), np.inf
         self.curvature: Curvature | None = None
@@ -136,7 +159,7 @@ class _Loop:
             )
             step = self._program(at)
             trial = self.shooting.fly(step.control * self.size)
-            predicted = self._merit(self.flight) - step.peak - step.bend - self.penalty * step.slack
+            predicted = self._merit(self.flight) - step.value - step.bend - self.penalty * step.slack
             if self.curvature is not None:
                 step, trial = self._corrected(at, step, trial)
             ratio = -self._loss(trial) / predicted if predicted > 0 else 0.0
@@ -160,8 +183,8 @@ class _Loop:
         return (other, flight) if self._merit(flight) < self._merit(trial) else (step, trial)
 
     def _merit(self, flight: Flight) -> float:
-        effort = float(self.norm.effort(flight.control).max()) / self.size
-        return effort + self.penalty * float(self.shooting.violations(flight.residual).sum())
+        value = self.goal.value(self.shooting, flight.control) / self.size
+        return value + self.penalty * float(self.shooting.violations(flight.residual).sum())
 
     def _loss(self, trial: Flight) -> float:
         """How much a trial raises the merit."""
@@ -169,10 +192,12 @@ class _Loop:
 
     def _accept(self, step: ConvexStep, trial: Flight, ratio: float) -> None:
         self.flight, self.accepted = trial, self.accepted + 1
-        self.peak = float(self.norm.effort(trial.control).max())
+        self.value = self.goal.value(self.shooting, trial.control)
         self.sensitivity = self.shooting.sensitivity(trial)
-        dual, self.multiplier = dual_value(self.shooting, trial, self.sensitivity, step.multiplier)
-        self.gap = abs(self.peak - dual) / max(self.peak, 1e-300)
+        dual, self.multiplier = self.goal.dual(
+            self.shooting, trial, self.sensitivity, self.size * step.multiplier
+        )
+        self.gap = abs(self.value - dual) / max(self.value, 1e-300)
         self.penalty = max(2.0, 3.0 * float(np.abs(step.multiplier).max()), 0.3 * self.penalty)
         self.damping = max(self.damping * (0.1 if ratio > 0.7 else 1.0 if ratio > 0.25 else 4.0), 1e-9)
         if self.curvature is not None or self.accepted > SLOW:
@@ -190,10 +215,11 @@ class _Loop:
             self.flight,
             self.sensitivity,
             self.multiplier,
-            self.peak,
+            self.value,
             self.gap,
             self.iterations,
             reason,
+            self.goal,
         )
 
 

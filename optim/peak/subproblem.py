@@ -1,8 +1,8 @@
-"""The convex step: least peak for the transfer linearised about the current control.
+"""The convex step: least peak (or impulse) for the transfer linearised about the current control.
 
-    minimise    p + penalty * slack + (damping / 2) sum_k weight_k |v_k - v0_k|^2 + curvature
+    minimise    value + penalty * slack + (damping / 2) sum_k weight_k |v_k - v0_k|^2 + curvature
     subject to  residual + G (v - v0) within the terminal set, up to the slack
-                effort(v_k) <= p on every open cell
+                effort(v_k) <= p on every open cell, p being the value or a given limit
 
 The slack makes the program feasible whatever the linearisation says (an exact penalty); the
 effort cones are kept whole, not linearised. Solved by Clarabel's interior point method.
@@ -16,8 +16,10 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import NDArray
 
-from ..norms import Euclidean, LargestComponent, Norm
+from ..norms import Norm
 from .curvature import Curvature
+from .effort_cones import effort_cones
+from .goal import Goal
 
 Array = NDArray[np.float64]
 
@@ -40,8 +42,8 @@ class ConvexStep:
     Attributes
     ----------
     control : (n, m)
-    peak, slack, bend : float
-        Peak, terminal slack, and the curvature term at the answer.
+    value, slack, bend : float
+        What is made least, terminal slack, and the curvature term at the answer.
     multiplier : (6,)
         Of the terminal rows, so that `multiplier @ derivative` is minus the switching function.
     trusted : bool
@@ -49,7 +51,7 @@ class ConvexStep:
     """
 
     control: Array
-    peak: float
+    value: float
     slack: float
     bend: float
     multiplier: Array
@@ -58,49 +60,33 @@ class ConvexStep:
 
 @final
 class ConeProgram:
-    """Sparse pattern and effort cones for n cells of one norm and one terminal set."""
+    """Sparse pattern and effort cones for n cells of one goal, one norm and one terminal set."""
 
-    def __init__(self, norm: Norm, cells: int, weights: Array, tolerances: tuple[float, float]) -> None:
+    def __init__(
+        self, goal: Goal, size: float, norm: Norm, weights: Array, tolerances: tuple[float, float]
+    ) -> None:
+        import clarabel
         import scipy.sparse as sparse
 
-        self.cells, self.m = cells, norm.control_matrix.shape[1]
+        self.cells, self.m = len(weights), norm.control_matrix.shape[1]
         self.tolerances = tolerances
         self.exact = [block for block in (0, 1) if tolerances[block] == 0.0]
         self.ball = [block for block in (0, 1) if tolerances[block] > 0.0]
         self.n_control = self.cells * self.m
         self.n_slack = 6 * len(self.exact) + len(self.ball)
-        self.size = self.n_control + 1 + self.n_slack
+        effort = effort_cones(goal, size, norm, weights)
+        self.effort, self.first_slack = effort, self.n_control + effort.extras
+        self.size = self.first_slack + self.n_slack
         self.weights = np.repeat(weights, self.m)
-        rows, cones = self._effort(norm, sparse)
         slack = sparse.csc_matrix(
-            (-np.ones(self.n_slack), (range(self.n_slack), range(self.n_control + 1, self.size))),
+            (-np.ones(self.n_slack), (range(self.n_slack), range(self.first_slack, self.size))),
             shape=(self.n_slack, self.size),
         )
+        empty = sparse.csc_matrix((len(effort.rhs), self.n_slack))
+        rows = sparse.hstack([effort.on_control, effort.on_extra, empty])
         self._fixed = sparse.vstack([slack, rows]).tocsc()
-        self._cones = cones
-        # the variables are changes of control: s = (offset) v0 - A z is the same cone point as for v0 + z
-        self._offset = -self._fixed[:, : self.n_control]
-
-    def _effort(self, norm: Norm, sparse: Any) -> tuple[Any, list[Any]]:
-        """Rows A with s = -A z in the cones, for effort(v_k) <= p."""
-        import clarabel
-
-        n, m = self.n_control, self.m
-        identity = sparse.identity(n, format="csc")
-        if isinstance(norm, Euclidean):
-            row = np.arange(n) + np.arange(n) // m + 1
-            head = np.arange(self.cells) * (m + 1)
-            entries = np.r_[row, head], np.r_[np.arange(n), np.full(self.cells, n)]
-            matrix = sparse.csc_matrix((-np.ones(n + self.cells), entries), shape=(n + self.cells, self.size))
-            return matrix, [clarabel.NonnegativeConeT(self.n_slack)] + [
-                clarabel.SecondOrderConeT(m + 1) for _ in range(self.cells)
-            ]
-        peak = sparse.csc_matrix(-np.ones((n, 1)))
-        empty = sparse.csc_matrix((n, self.n_slack))
-        upper = sparse.hstack([identity, peak, empty])
-        lower_peak = peak if isinstance(norm, LargestComponent) else sparse.csc_matrix((n, 1))
-        lower = sparse.hstack([-identity, lower_peak, empty])
-        return sparse.vstack([upper, lower]), [clarabel.NonnegativeConeT(self.n_slack + 2 * n)]
+        self._fixed_rhs = np.r_[np.zeros(self.n_slack), effort.rhs]
+        self._cones = [clarabel.NonnegativeConeT(self.n_slack), *effort.cones]
 
     def solve(
         self, at: Linearisation, *, penalty: float, damping: float, curvature: Curvature | None = None
@@ -115,17 +101,20 @@ class ConeProgram:
         exact_rows, exact_rhs = self._exact_rows(at.derivative, at.residual)
         ball_rows, ball_rhs = self._ball_rows(at.derivative, at.residual)
         A = sparse.vstack([sparse.csc_matrix(exact_rows), self._fixed, sparse.csc_matrix(ball_rows)])
-        b = np.concatenate([exact_rhs, self._offset @ centre, ball_rhs])
+        # the variables are changes of control: the rows are the same with v0 + z in the place of v
+        fixed_rhs = self._fixed_rhs - self._fixed[:, :n] @ centre
+        b = np.concatenate([exact_rhs, fixed_rhs, ball_rhs])
         cones = [clarabel.ZeroConeT(len(exact_rhs)), *self._cones]
         cones += [clarabel.SecondOrderConeT(4) for _ in self.ball]
-        diagonal = np.r_[damping * self.weights, np.zeros(1 + self.n_slack)]
-        q = np.r_[np.zeros(n), 1.0, np.full(self.n_slack, penalty)]
+        diagonal = np.r_[damping * self.weights, np.zeros(self.size - n)]
+        price = np.r_[self.effort.control_price, self.effort.extra_price]
+        q = np.r_[price, np.full(self.n_slack, penalty)]
         bend = 0.0
         if curvature is not None and extra:
             along = sparse.hstack(
                 [
                     sparse.csc_matrix(curvature.rows),
-                    sparse.csc_matrix((extra, 1 + self.n_slack)),
+                    sparse.csc_matrix((extra, self.size - n)),
                     -sparse.identity(extra),
                 ]
             )
@@ -140,9 +129,9 @@ class ConeProgram:
             bend = float(curvature.values @ (curvature.rows @ z[:n]) ** 2) / 2
         return ConvexStep(
             control=at.control + z[:n].reshape(self.cells, self.m),
-            peak=float(z[n]),
+            value=float(price @ z[: self.first_slack] + self.effort.control_price @ centre),
             bend=bend,
-            slack=float(np.maximum(z[n + 1 : self.size], 0.0).sum()),
+            slack=float(np.maximum(z[self.first_slack : self.size], 0.0).sum()),
             multiplier=self._multiplier(dual, len(b) - extra),
             trusted=str(answer.status) in ("Solved", "AlmostSolved"),
         )
@@ -151,7 +140,7 @@ class ConeProgram:
         rows = np.zeros((3 * len(self.exact), self.size))
         for i, block in enumerate(self.exact):
             rows[3 * i : 3 * i + 3, : self.n_control] = G[3 * block : 3 * block + 3]
-            start = self.n_control + 1 + 6 * i
+            start = self.first_slack + 6 * i
             rows[3 * i : 3 * i + 3, start : start + 3] = np.eye(3)
             rows[3 * i : 3 * i + 3, start + 3 : start + 6] = -np.eye(3)
         rhs = [-residual[3 * block : 3 * block + 3] for block in self.exact]
@@ -160,7 +149,7 @@ class ConeProgram:
     def _ball_rows(self, G: Array, residual: Array) -> tuple[Array, Array]:
         rows, rhs = np.zeros((4 * len(self.ball), self.size)), np.zeros(4 * len(self.ball))
         for i, block in enumerate(self.ball):
-            rows[4 * i, self.n_control + 1 + 6 * len(self.exact) + i] = -1.0
+            rows[4 * i, self.first_slack + 6 * len(self.exact) + i] = -1.0
             rhs[4 * i] = self.tolerances[block]
             rows[4 * i + 1 : 4 * i + 4, : self.n_control] = -G[3 * block : 3 * block + 3]
             rhs[4 * i + 1 : 4 * i + 4] = residual[3 * block : 3 * block + 3]

@@ -20,8 +20,7 @@ from typing import final
 import numpy as np
 from numpy.typing import NDArray
 
-from ..norms import Euclidean, LargestComponent
-from .optimality import control_support
+from ..norms import Euclidean
 from .scp import LocalAnswer
 
 Array = NDArray[np.float64]
@@ -67,15 +66,20 @@ class SwitchingFunction:
 
     @cached_property
     def pontryagin_residual(self) -> float:
-        """Integral of w (peak * support(sigma) - sigma . v) over the peak: 0 at an extremal, never below."""
+        """Integral over the windows of what the control misses of its worth against sigma, as a fraction.
+
+        For the least peak that is w (peak * support(sigma) - sigma . v) / peak; 0 at an extremal,
+        never below.
+        """
         mesh = self.answer.shooting.mesh
         norm = self.answer.shooting.scaled.problem.norm
         sigma = self.at(GAUSS_NODES)
         w = np.stack([mesh.window_at(float(s))[self.cells] for s in GAUSS_NODES], axis=1)
         measure = w * GAUSS_WEIGHTS * self.length[:, None]
-        best = self.answer.peak * control_support(norm, sigma)
-        done = np.einsum("nqm,nm->nq", sigma, self.answer.flight.control)
-        return float((measure * (best - done)).sum() / self.answer.peak)
+        goal, flow = self.answer.goal, np.full(sigma.shape[:-1], 1.0 / float(mesh.impulse.sum()))
+        control, value = self.answer.flight.control[:, None, :], self.answer.value
+        missed = goal.worth(norm, sigma, flow) - goal.gain(norm, sigma, flow, control, value)
+        return float((measure * missed).sum() / goal.unit(value))
 
 
 def switching_function(answer: LocalAnswer) -> SwitchingFunction:
@@ -95,8 +99,10 @@ def switching_function(answer: LocalAnswer) -> SwitchingFunction:
     powers = GAUSS_NODES[:, None] ** np.arange(3)
     sigma = np.einsum("qj,njm->nqm", powers, coefficients)
     w = np.stack([mesh.window_at(float(s))[cells] for s in GAUSS_NODES], axis=1)
-    ideal = ((w * GAUSS_WEIGHTS) * control_support(norm, sigma)).sum(axis=1) * length
-    loss = np.maximum(ideal - control_support(norm, integral), 0.0)
+    goal, flow = answer.goal, np.full(sigma.shape[:-1], 1.0 / float(mesh.impulse.sum()))
+    ideal = ((w * GAUSS_WEIGHTS) * goal.worth(norm, sigma, flow)).sum(axis=1) * length
+    done = goal.worth(norm, integral, answer.shooting.weights)
+    loss = np.maximum(ideal - done, 0.0) / goal.unit(answer.value)
     return SwitchingFunction(answer, cells, mesh.edges[cells], length, coefficients, loss)
 
 
@@ -109,25 +115,24 @@ def _moments(profile: Array) -> Array:
 def switch_points(sigma: SwitchingFunction, cell: int) -> list[float]:
     """Fractions inside one open cell where the best control switches.
 
-    With limits on components a switch shows as a value strictly between the limits: the mean of
-    the two sides, which says where between them the switch lies. (The zero of sigma does not: the
-    solver puts its mean over such a cell at zero.) With a Euclidean limit it is where |sigma|
-    dips, because the direction swings round there.
+    With limits on components (or least impulse, off or full) a switch shows as a value strictly
+    between the limits: the mean of the two sides, which says where between them the switch lies.
+    (The zero of sigma does not: the solver puts its mean over such a cell at zero.) With a peak in
+    the Euclidean norm it is where |sigma| dips, because the direction swings round there.
     """
-    norm = sigma.answer.shooting.scaled.problem.norm
-    if isinstance(norm, Euclidean):
+    answer, norm = sigma.answer, sigma.answer.shooting.scaled.problem.norm
+    share = answer.goal.share(norm, answer.flight.control[cell], answer.value)
+    if share is None:
         grid = np.linspace(0.0, 1.0, 33)
         size = np.linalg.norm(sigma.at(grid)[cell], axis=1)
         k = int(np.argmin(size))
         turning = 0 < k < 32 and size[k] < 0.5 * min(size[0], size[-1])
         return [float(grid[k])] if turning else []
-    low = -1.0 if isinstance(norm, LargestComponent) else 0.0
-    level = sigma.answer.flight.control[cell] / sigma.answer.peak
-    share = (level - low) / (1.0 - low)
-    slope = sigma.coefficients[cell, 1] + sigma.coefficients[cell, 2]
+    ends = answer.goal.throw(norm, sigma.at(np.array([0.0, 1.0]))[cell])
+    rising = ends[1] - ends[0]
     inside = (share > 1e-3) & (share < 1.0 - 1e-3)
     return sorted(
-        float(f if rising <= 0 else 1.0 - f) for f, rising in zip(share[inside], slope[inside], strict=True)
+        float(f if up <= 0 else 1.0 - f) for f, up in zip(share[inside], rising[inside], strict=True)
     )
 
 
@@ -141,10 +146,9 @@ def switch_times(sigma: SwitchingFunction) -> tuple[tuple[float, int], ...]:
     norm = answer.shooting.scaled.problem.norm
     unit = answer.shooting.scaled.units.time
     inside = [(i, s) for i in range(len(sigma.cells)) for s in switch_points(sigma, i)]
-    if isinstance(norm, Euclidean):
+    high = answer.goal.share(norm, answer.flight.control, answer.value)
+    if high is None:
         return tuple((float(sigma.start[i] + s * sigma.length[i]) * unit, -1) for i, s in inside)
-    low = -1.0 if isinstance(norm, LargestComponent) else 0.0
-    high = (answer.flight.control / answer.peak - low) / (1.0 - low)
     found = []
     for j in range(high.shape[1]):
         last: tuple[float, float] | None = None
@@ -164,7 +168,8 @@ def switch_times(sigma: SwitchingFunction) -> tuple[tuple[float, int], ...]:
             if last is not None and abs(share - last[1]) > 0.5:
                 found.append((start, j))
             last = (end, share)
-    return tuple(sorted((t * unit, j) for t, j in found))
+    whole = isinstance(norm, Euclidean)
+    return tuple(sorted((t * unit, -1 if whole else j) for t, j in found))
 
 
 def _next_side(high: Array, cell: int, j: int) -> float:

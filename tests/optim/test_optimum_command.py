@@ -101,7 +101,25 @@ def test_least_time_within_the_limit(tmp_path, capsys):
     assert run(["optimum", str(path), "--norm", "component", "--no-bound", "--least-time"]) == 0
     said = capsys.readouterr().out
     assert "limit 0.2 N m is enough" in said
-    assert "least time within 0.2: " in said
+    assert "least time within 0.2 N m: " in said
+
+
+def test_least_impulse_within_the_limit(tmp_path, capsys):
+    record = tmp_path / "found.json"
+    path = scenario(tmp_path, more="torque_limit = 0.2\nstarts = 1")
+    command = ["optimum", str(path), "--norm", "component", "--no-bound", "--least-impulse"]
+    assert run([*command, "--json", str(record)]) == 0
+    said = capsys.readouterr().out
+    assert "least impulse within 0.2 N m: " in said
+    assert "N m s (CHECKED; " in said
+    notes = read_record(record).document["sections"]["optimum"][0]["notes"]
+    assert any(note.startswith("Least impulse within 0.2 N m: ") for note in notes)
+
+
+@pytest.mark.parametrize("question", ["--least-time", "--least-impulse"])
+def test_a_question_within_a_limit_needs_a_limit(tmp_path, capsys, question):
+    assert run(["optimum", str(scenario(tmp_path)), "--no-bound", question]) == 2
+    assert "optimum.torque_limit" in capsys.readouterr().err
 
 
 def test_thrusters_give_a_force(tmp_path, capsys):
