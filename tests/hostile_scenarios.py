@@ -1,11 +1,10 @@
 """Scenarios at the edges of what a floor certificate may be asked, and an optimising adversary."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction as F
 
 import numpy as np
-from floor_attack import decimal, random_inertia
-from intermit.models.ensemble import MetricOptions, simulate_ensemble
+from floor_attack import Adversary, Attack, decimal, random_inertia
 from intermit.models.laws import AdaptiveScaling, PersistenceFilter
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import (
@@ -21,8 +20,6 @@ from intermit.models.schedule.polynomial import compose_affine
 from intermit.verify.floor.certify import FloorOptions
 from intermit.verify.floor.comparison import BodyBounds
 from intermit.verify.floor.question import FloorQuestion
-from intermit.verify.floor.study import answer
-from intermit.verify.floor.worst_found import _Shape
 
 
 def shifted(schedule: Schedule, by: F) -> Schedule:
@@ -94,22 +91,6 @@ def hostile_question(seed: int) -> FloorQuestion:
     return FloorQuestion(law=law, options=FloorOptions(max_bins=8), **common)
 
 
-@dataclass(frozen=True)
-class Worst:
-    """Largest ratios of simulated to certified (floor: certified to simulated); above 1 is a break."""
-
-    certified: bool
-    floor: float = 0.0
-    angle: float = 0.0
-    rate: float = 0.0
-    torque: float = 0.0
-    settled: float = 0.0
-
-    @property
-    def largest(self) -> float:
-        return max(self.floor, self.angle, self.rate, self.torque, self.settled)
-
-
 def perturbed(body: RigidBody, tolerance, rng) -> RigidBody:
     signs = rng.integers(2, size=(3, 3)) * 2 - 1
     rows = [
@@ -119,52 +100,11 @@ def perturbed(body: RigidBody, tolerance, rng) -> RigidBody:
     return RigidBody.from_rows(rows)
 
 
-def hostile_attack(seed: int, *, periods: int = 4, question: FloorQuestion | None = None) -> Worst:
-    """Certify, then let an adversary optimise each violation in turn."""
+def hostile_attack(seed: int, *, question: FloorQuestion | None = None) -> Attack:
+    """Certify, then attack each bound in turn, over the whole certified time up to 25 periods."""
     q = hostile_question(seed) if question is None else question
-    found = answer(q)
-    floor = found.floor
-    if floor is None or floor.horizon is not None or floor.stuck is not None:
-        return Worst(False)
-    assert found.torque is not None
-    assert found.convergence is not None
-    rng = np.random.default_rng(seed + 77)
-    bodies = [q.body]
+    body = q.body
     if q.inertia_tolerance is not None:
-        bodies = [perturbed(q.body, q.inertia_tolerance, rng)]
-    shape = _Shape(q.law, bodies[0], q.schedule, q.initial, q.max_rate)
-    # 2 acos(b0) and 4 periods; settling is looked at over the whole certified time, up to 30 periods
-    period = float(q.schedule.period)
-    settling = found.convergence.settling
-    last = periods if settling is None else int(min(max(periods, settling / period + 1), 25))
-    horizon = last * q.schedule.period
-    times = np.linspace(0, float(horizon), 30 * last + 1)
-    options = MetricOptions(attitude=float(q.attitude), rate=float(q.rate))
-
-    def figures(points):
-        runs = simulate_ensemble(
-            q.law, bodies[0], q.schedule, shape.states(points), horizon=horizon, times=times, metrics=options
-        )
-        m = runs.metrics
-        angle = np.nanmax(2 * np.arccos(np.clip(runs.states[:, :, 0], -1, 1)), axis=1)
-        speed = np.nanmax(np.linalg.norm(runs.states[:, :, 4:7], axis=2), axis=1)
-        late = np.where(np.isnan(m.settling_time), np.inf, m.settling_time)
-        settled = late / settling if settling and float(horizon) > settling else np.zeros(len(points))
-        return np.stack(
-            [
-                floor.value / m.filter_minimum,
-                angle / found.convergence.largest_angle,
-                speed / found.convergence.largest_rate,
-                m.peak_euclidean / found.torque.applied,
-                settled,
-            ]
-        )
-
-    points = shape.draw(rng, 32)
-    values = figures(points)
-    for radius in (0.3, 0.1, 0.03):
-        best = np.concatenate([points[np.argsort(-row)[:2]] for row in values])
-        centres = best[rng.integers(len(best), size=20)]
-        fresh = shape.clip(centres + radius * rng.normal(size=centres.shape) * shape.spread(centres))
-        points, values = np.vstack([points, fresh]), np.hstack([values, figures(fresh)])
-    return Worst(True, *np.nanmax(values, axis=1).tolist())
+        body = perturbed(body, q.inertia_tolerance, np.random.default_rng(seed + 77))
+    adversary = Adversary(batches=(32, 20, 20, 20), periods=4, most_periods=25)
+    return adversary.attack(q, seed, body)
