@@ -10,6 +10,7 @@ from intermit.models.ensemble import MetricOptions, simulate_ensemble
 from intermit.models.laws import AdaptiveScaling, PersistenceFilter
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import Hermite, Ramps, Window, build_schedule
+from intermit.verify.convergence import envelope
 from intermit.verify.floor.certify import FloorOptions
 from intermit.verify.floor.claims import reaches_far_enough
 from intermit.verify.floor.comparison import BodyBounds
@@ -66,7 +67,7 @@ def random_inertia(rng):
     return [[decimal(J[min(i, j), max(i, j)]) for j in range(3)] for i in range(3)]
 
 
-FIGURES = ("floor", "angle", "rate", "torque", "settled")
+FIGURES = ("floor", "angle", "rate", "torque", "settled", "decay")
 """What is attacked; each as a ratio that must not exceed one."""
 
 
@@ -78,6 +79,7 @@ class Attack:
     ----------
     floor : certified floor over the least R simulated
     angle, rate, torque, settled : largest simulated over certified
+    decay : the same of angle, rate and 1/R against their bounds at each instant
     """
 
     certified: bool
@@ -86,10 +88,11 @@ class Attack:
     rate: float = 0.0
     torque: float = 0.0
     settled: float = 0.0
+    decay: float = 0.0
 
     @property
     def largest(self) -> float:
-        return max(self.floor, self.angle, self.rate, self.torque, self.settled)
+        return max(getattr(self, name) for name in FIGURES)
 
     @property
     def floor_gap(self) -> float:
@@ -140,10 +143,11 @@ class Adversary:
         return int(min(wanted, self.most_periods)) * period
 
     def ratios(self, q: FloorQuestion, found: FloorAnswer, shape: _Shape, points):
-        """Figures of each start, (5, n); 0 for a start that is not in the set."""
+        """Figures of each start, (6, n); 0 for a start that is not in the set."""
         floor, bound = found.floor, found.convergence
         horizon = self.horizon(q, found)
         cycles = 1 if q.schedule.period is None else int(horizon / q.schedule.period)
+        times = np.linspace(0, float(horizon), 40 * cycles + 1)
         states = shape.states(points)
         runs = simulate_ensemble(
             q.law,
@@ -151,25 +155,35 @@ class Adversary:
             q.schedule,
             states,
             horizon=horizon,
-            times=np.linspace(0, float(horizon), 40 * cycles + 1),
+            times=times,
             metrics=MetricOptions(attitude=float(q.attitude), rate=float(q.rate)),
         )
         m, tiny = runs.metrics, 1e-300
         inside = shape.inside(states)
+        assert inside.any()
         assert not np.isnan(m.filter_minimum[inside]).any()  # no run stopped early
         # 4 asin(sqrt((1 - b0)/2)) = 4 asin(|(1 - b0, bv)|/2) loses no digits at either end
         chord = np.linalg.norm(runs.states[:, :, :4] - [1, 0, 0, 0], axis=2) / 2
-        angle = (4 * np.arcsin(np.clip(chord, 0, 1))).max(axis=1)
-        speed = np.linalg.norm(runs.states[:, :, 4:7], axis=2).max(axis=1)
+        angle = 4 * np.arcsin(np.clip(chord, 0, 1))
+        speed = np.linalg.norm(runs.states[:, :, 4:7], axis=2)
+        R = runs.states[:, :, 7 + [s.name for s in q.law.controller_states].index("R")]
+        held = envelope(floor, times)
+        # what the simulation does not resolve, an error of 1e-9 of the first value, is no violation
+        now = [
+            (angle - 1e-9) / np.maximum(held["angle"], tiny),
+            (speed - 1e-9 * speed.max()) / np.maximum(held["rate"], tiny),
+            held["filter"] / R,
+        ]
         # a run that ends outside its tolerances settles after the horizon, if at all
         settled = np.where(np.isnan(m.settling_time), float(horizon), m.settling_time)
         settled /= np.inf if bound.settling is None else max(bound.settling, tiny)
         rows = [
             floor.value / m.filter_minimum,
-            angle / max(bound.largest_angle, tiny),
-            speed / max(bound.largest_rate, tiny),
+            angle.max(axis=1) / max(bound.largest_angle, tiny),
+            speed.max(axis=1) / max(bound.largest_rate, tiny),
             m.peak_euclidean / max(found.torque.applied, tiny),
             settled,
+            np.max(now, axis=(0, 2)),
         ]
         return np.where(inside, np.stack(rows), 0.0)
 

@@ -83,10 +83,14 @@ def analyse_convergence(floor: Floor, *, attitude: float, rate: float) -> Conver
         ratio=max((max(t.ratios.values(), default=0.0) for t in complete), default=1.0),
         envelope_start=max((t.start for t in complete), default=Fraction(0)),
         settling=None if any(t is None for t in times) else max(t for t in times if t is not None),
-        # 2 acos(1 - S) = 4 asin(sqrt(S/2)), which loses no digits where S is small
-        largest_angle=float(4 * np.arcsin(min(np.sqrt(gaps / 2) * OUTWARD, 1.0)) * OUTWARD),
+        largest_angle=_angle(gaps),
         largest_rate=max(r.rate for row in reaches for r in row),
     )
+
+
+def _angle(gap: float) -> float:
+    """Bound of 2 acos(b0), rad, for 1 - b0 <= gap: 4 asin(sqrt(gap/2)), exact where gap is small."""
+    return float(4 * np.arcsin(min(np.sqrt(gap / 2) * OUTWARD, 1.0)) * OUTWARD)
 
 
 def _reaches(floor: Floor, witness: Witness) -> Iterator[Reach]:
@@ -140,11 +144,13 @@ def envelope(floor: Floor, times: Array) -> dict[str, Array]:
             inside = (times >= start) & (times <= stop)
             if not inside.any():
                 continue
-            S = min(box.cosine_gap * scale**2, 2.0)
             reach = _reach(box, root, None if scale == 1.0 else scale)
-            result["angle"][inside] = np.fmax(result["angle"][inside], 2 * np.arccos(1 - S))
+            result["angle"][inside] = np.fmax(result["angle"][inside], _angle(box.cosine_gap * scale**2))
             result["rate"][inside] = np.fmax(result["rate"][inside], reach.rate * scale)
             result["filter"][inside] = np.fmin(result["filter"][inside], box.filter_low)
+    if floor.horizon is not None:  # beyond it some of the witnesses are silent
+        for values in result.values():
+            values[times > float(floor.horizon)] = np.nan
     return result
 
 

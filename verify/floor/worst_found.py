@@ -77,8 +77,10 @@ def find_worst(
     horizon: Fraction,
     max_rate: Fraction | None = None,
     search: Search | None = None,
-) -> WorstFound:
+) -> WorstFound | None:
     """Search an initial set for the start with the least R over [0, horizon].
+
+    None where no start that was tried lies in the set: two bounds on the rate may leave little of it.
 
     Parameters
     ----------
@@ -101,6 +103,8 @@ def find_worst(
         runs += options.local
         radius *= 0.5
     worst = int(np.argmin(values))
+    if not np.isfinite(values[worst]):
+        return None
     state = shape.states(points[worst : worst + 1])[0]
     return WorstFound(
         float(values[worst]), tuple(state[:4].tolist()), tuple(state[4:].tolist()), float(times[worst]), runs

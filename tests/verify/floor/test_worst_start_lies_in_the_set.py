@@ -3,6 +3,7 @@
 from fractions import Fraction as F
 
 import numpy as np
+from hostile_scenarios import shifted
 from intermit.models.laws import PersistenceFilter
 from intermit.models.schedule import Hermite, Window, build_schedule
 from intermit.verify.floor.sets import InitialSet
@@ -42,3 +43,11 @@ def test_the_worst_found_is_inside():
     b0, w = found.quaternion[0], np.array(found.rate)
     assert np.sqrt(1 - b0) <= 1.0
     assert np.sqrt(w @ J1.inertia @ w) <= 0.3
+
+
+def test_nothing_is_reported_where_no_start_tried_lies_inside():
+    """With g(0) = 1 the law's own term 2 g^2 kappa bv is 9 rad/s and more: no such |w| and |Omega|_J."""
+    inside_a_window = shifted(SCHEDULE, F(1, 2))
+    far = InitialSet(0.9, 1.0, 0.0, 0.3, "an empty set")
+    search = Search(samples=8, rounds=1, local=8)
+    assert find_worst(LAW, J1, inside_a_window, far, horizon=F(8), max_rate=F("0.01"), search=search) is None
