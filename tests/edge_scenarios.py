@@ -13,7 +13,7 @@ from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import Hermite, Ramps, Schedule, Window, build_schedule
 from intermit.verify.floor.certify import FloorOptions
 from intermit.verify.floor.comparison import BodyBounds
-from intermit.verify.floor.study import FloorQuestion
+from intermit.verify.floor.question import FloorQuestion
 
 
 def sized_body(rng: np.random.Generator) -> RigidBody:

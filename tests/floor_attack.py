@@ -10,10 +10,10 @@ from intermit.models.ensemble import MetricOptions, simulate_ensemble
 from intermit.models.laws import AdaptiveScaling, PersistenceFilter
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import Hermite, Ramps, Window, build_schedule
-from intermit.verify.convergence import envelope
 from intermit.verify.floor.certify import FloorOptions
 from intermit.verify.floor.claims import reaches_far_enough
 from intermit.verify.floor.comparison import BodyBounds
+from intermit.verify.floor.convergence import envelope
 from intermit.verify.floor.question import FloorQuestion
 from intermit.verify.floor.study import FloorAnswer, answer
 from intermit.verify.floor.worst_found import _Shape

@@ -19,11 +19,22 @@ TOLERANCE = 1e-6
 """Relative allowance for the simulation's own error."""
 
 
-@pytest.mark.parametrize("seed", [2, 3])
-def test_a_few(seed):
+def check(seed):
     worst = hostile_attack(seed)
     assert worst.certified
     assert worst.largest <= 1 + TOLERANCE
+
+
+@pytest.mark.parametrize("seed", [2, 3])
+def test_a_few(seed):
+    check(seed)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [70, 77, 87])
+def test_starts_pushed_out_of_the_set_count_for_nothing(seed):
+    """|w| held to its own bound may push Omega out of the set, and did so here."""
+    check(seed)
 
 
 @pytest.mark.soak

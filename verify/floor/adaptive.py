@@ -36,6 +36,11 @@ FAINT = 1e-3
 """Likewise for y, which enters as its square."""
 
 
+UNLEARNT = 0.01
+"""A lower bound of k below this share of lambda may be held for a step: as g opens it learns less
+than the slack takes, and it must not fall below zero."""
+
+
 ABOVE_ROUNDING = 1e-11
 """Relative slack of k per second, so that its slope is not lost in the rounding of its value."""
 
@@ -113,8 +118,8 @@ class AdaptiveSystem(LawComparison):
         return (*low, k, r, at_least_tiny(Y), at_least_tiny(Z), L, U)
 
     def choices(self, state: Sequence[float], peak: float) -> Sequence[Modes]:
-        """How to bound f from above, best now first; whether the lower bound of s is kept."""
-        _, s, _, _, Y, Z, _, _ = state
+        """Whether the lower bound of s is kept; how to bound f from above, best now first; k held last."""
+        _, s, k, _, Y, Z, _, _ = state
         a = self._a
         if Z * Z >= BLIND:
             return ()
@@ -126,7 +131,8 @@ class AdaptiveSystem(LawComparison):
         if peak == 0.0:
             tops = ["split"]
         keeps = ("kept", "zero") if s > NEGLIGIBLE * Z else ("zero",)
-        return tuple((keep, top) for keep in keeps for top in tops)
+        learns: list[Modes] = [(), ("held",)] if peak > 0 and k < UNLEARNT * self._lam else [()]
+        return tuple((keep, top, *held) for keep in keeps for held in learns for top in tops)
 
     def _f(self, S: float, y: float) -> float:
         return (2.0 - S) * (y * y + 2.0 * self._a * S)
@@ -160,10 +166,11 @@ class AdaptiveSystem(LawComparison):
         gamma = self._gamma
         gain_scale = slack * peak * gamma * U * 2.0 * (Y * Y + 2.0 * self._a * T)
         gain_scale += ABOVE_ROUNDING * peak * (L + lam)
+        k_rate = gamma * r * G * f_low - gain_scale
         return (
             -low_pull * y - scale * y,
             s_rate,
-            gamma * r * G * f_low - gain_scale,
+            0.0 if "held" in modes else k_rate,
             -lam * r + G * (2.0 - T) - slack * (lam * r + peak),
             -high_pull * Y + scale * Y,
             drift * angle_factor_float(T) - high_pull * Z + scale * Z + spread,

@@ -99,7 +99,7 @@ def _steps(steps: Iterable[Step]) -> list[dict[str, Any]]:
     return [
         {
             "until": step.stop,
-            "forms": list(step.modes),
+            "forms": list(step.modes[:2]),  # what follows only says how the step was proposed
             "bounds": {name: scaled_integers(c) for name, c in step.controls.items()},
         }
         for step in steps

@@ -263,6 +263,12 @@ def _search_evidence(facts: FloorFacts) -> tuple[Evidence, ...]:
 
 
 def _shortfall(floor: Floor) -> tuple[str, str]:
+    if floor.law.parameters.get("k0") == 0 and floor.initial.s_low == floor.initial.y_low == 0:
+        return (
+            "k(0) = 0: the nearer a start is to the target, the less its gain learns; no decay is certified "
+            "for all of them at once",
+            "take k0 > 0",
+        )
     if floor.stuck is not None and not floor.lost_angle:
         return (
             f"no further step could be proved from t = {float(floor.stuck):.4g} s",
