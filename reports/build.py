@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from .content.blocks import charts_of
+from .content.blocks import Chapter, charts_of
 from .content.budget import thin
 from .content.chapters import chapters
-from .content.comparing import comparison_chapters, comparison_sentence
+from .content.comparing import comparison_chapters
 from .content.drawn import drawings, pdf_figures
+from .content.heading import Heading, comparison_heading, heading
 from .exports import export_files
 from .folder import read_extras, write_folder
 from .html import html_page
-from .html.page import render
 from .paper import paper_files
 from .pdf import pdf_document
 from .record import ARRAYS_NAME, DOCUMENT_NAME, Record, arrays_bytes, read_record
@@ -24,13 +24,18 @@ DRAWN_POINTS = 60_000
 
 def report_files(record: Record) -> dict[str, bytes]:
     """Every file of the report by relative path; the same record gives the same bytes."""
-    contents = chapters(record)
     files = {DOCUMENT_NAME: record.to_json().encode(), ARRAYS_NAME: arrays_bytes(record.arrays)}
-    files["report.html"] = html_page(record, contents).encode()
+    return files | _pages(heading(record), chapters(record)) | export_files(record)
+
+
+def _pages(top: Heading, contents: tuple[Chapter, ...]) -> dict[str, bytes]:
+    """HTML, PDF and paper kit of the same chapters."""
     drawn = drawings(thin(charts_of(contents), DRAWN_POINTS))
-    files["report.pdf"] = pdf_document(record, contents, drawn)
-    kit = paper_files(record, contents, drawn | pdf_figures(drawn))
-    files |= export_files(record)
+    kit = paper_files(top, contents, drawn | pdf_figures(drawn))
+    files = {
+        "report.html": html_page(top, contents).encode(),
+        "report.pdf": pdf_document(top, contents, drawn),
+    }
     return files | {f"paper/{name}": data for name, data in kit.items()}
 
 
@@ -52,10 +57,8 @@ def rebuild_report(source: str | Path, folder: str | Path, *, force: bool = Fals
 
 
 def comparison_files(a: Record, b: Record) -> dict[str, bytes]:
-    """Two records and the page that compares them."""
-    title = f"{a.document['title']} / {b.document['title']}"
-    page = render(title, comparison_sentence(a, b), a, comparison_chapters(a, b), other=b)
-    files = {"report.html": page.encode()}
+    """Two records and the pages that compare them."""
+    files = _pages(comparison_heading(a, b), comparison_chapters(a, b))
     for name, record in (("A", a), ("B", b)):
         files[f"{name}/{DOCUMENT_NAME}"] = record.to_json().encode()
         files[f"{name}/{ARRAYS_NAME}"] = arrays_bytes(record.arrays)

@@ -15,6 +15,7 @@ All rounding is decimal and exact on the stored double.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decimal
@@ -26,6 +27,8 @@ BOUND_DIGITS = 5
 """Digits of a one-sided bound: true at any length, and rounding it the safe way costs less than 1e-4."""
 MINUS = "\u2212"
 MISSING = "\u2013"
+ROOT = re.compile(r"([A-Za-z]+)\^1/2(?![0-9])")
+"""A unit's square root, as records write it."""
 _EXACT = Context(prec=400)
 
 
@@ -204,8 +207,9 @@ def superscript(value: int) -> str:
 
 
 def unit_text(unit: str) -> str:
-    """Write a unit with a middle dot, true exponents and no caret: "kg m^2" is "kg·m²"."""
+    """Write a unit with a middle dot, true exponents and roots, no caret: "kg^1/2 m^2" is "√kg·m²"."""
     out, i = "", 0
+    unit = ROOT.sub("√\\1", unit)
     while i < len(unit):
         if unit[i] == "^":
             j = i + 1

@@ -98,9 +98,11 @@ def check_sections(study: CheckStudy) -> tuple[dict[str, Any], dict[str, Array]]
 def scenario_entry(scenario: Scenario) -> dict[str, Any]:
     """What was asked, in facts."""
     state, bounds = scenario.initial, scenario.initial_set
+    tolerance = scenario.tolerance
     facts = [
-        _fact("initial error angle", parts.quantity("angle", state.angle_deg, unit="deg")),
-        _fact("initial rate", text=f"{[float(x) for x in state.exact_rate]} rad/s"),
+        {"label": "inertia", "matrix": scenario.body.inertia.tolist(), "unit": "kg m^2"},
+        _fact("initial error angle", parts.quantity("angle", float(f"{state.angle_deg:.10g}"), unit="deg")),
+        _fact("initial rate", text=f"({', '.join(f'{float(x):g}' for x in state.exact_rate)}) rad/s"),
         _fact("largest error angle of the set", _exact("max_angle", bounds.max_angle_deg, "deg")),
     ]
     if bounds.max_rate is not None:
@@ -108,6 +110,9 @@ def scenario_entry(scenario: Scenario) -> dict[str, Any]:
     if bounds.max_weighted_rate is not None:
         quantity = _exact("max_weighted_rate", bounds.max_weighted_rate, "kg^1/2 m/s")
         facts.append(_fact("largest sqrt(Omega' J Omega) of the set", quantity))
+    settled = f"|bv| <= {float(tolerance.attitude):g} and |w| <= {float(tolerance.rate):g} rad/s, for good"
+    facts.append(_fact("settled means", text=settled))
+    facts.append(_fact("runs end at", _exact("horizon", scenario.horizon, "s")))
     if scenario.limits is not None:
         quantity = _exact("torque_limit", scenario.limits.torque, "N m")
         facts.append(_fact(f"torque limit ({scenario.limits.norm})", quantity))

@@ -86,7 +86,7 @@ def optimum_entry(study: OptimumStudy, optimum: Optimum) -> tuple[dict[str, Any]
         entry["bound_name"] = bound.name
         entry["other_bounds"] = [_lower(b.name, b.value, unit) for b in bound.all if b is not bound.best]
     if optimum.gap is not None:
-        entry["gap"] = parts.quantity("gap", 0.0, max(0.0, optimum.gap), side="upper")
+        entry["gap"] = parts.quantity("gap", 0.0, 100 * max(0.0, optimum.gap), unit="%", side="upper")
     if held:
         entry["arrays"] = {name.removeprefix(f"{key}."): name for name in held}
     if answer.switching is not None:

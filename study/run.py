@@ -116,23 +116,31 @@ def metrics(run: Run) -> list[dict[str, Any]]:
     if settling is None:
         out.append(parts.quantity("settling_time", None, unit="s", note="not settled within the horizon"))
     else:
-        out.append(_figure("settling_time", settling, "s"))
+        out.append(_figure("settling_time", settling, "s", "settling time"))
     out += [
-        _figure("peak_torque_component", torque.peak_component.value, "N m"),
-        _figure("peak_torque_euclidean", torque.peak_euclidean.value, "N m"),
-        _figure("peak_command_component", torque.peak_commanded_component.value, "N m"),
-        _figure("peak_command_euclidean", torque.peak_commanded_euclidean.value, "N m"),
-        _figure("impulse", torque.impulse, "N m s"),
-    ]
+        _figure("peak_torque_component", torque.peak_component.value, "N m", "peak |g u|, largest component"),
+        _figure("peak_torque_euclidean", torque.peak_euclidean.value, "N m", "peak |g u|, Euclidean"),
+        _figure(
+            "peak_command_component", torque.peak_commanded_component.value, "N m",
+            "peak |u|, largest component",
+        ),
+        _figure(
+            "peak_command_euclidean", torque.peak_commanded_euclidean.value, "N m", "peak |u|, Euclidean"
+        ),
+        _figure("impulse", torque.impulse, "N m s", "impulse, integral of |g u|"),
+    ]  # fmt: skip
     if floor is not None:
-        out.append(_figure("least_filter_state", floor.value, "s"))
-    out.append(parts.quantity("quaternion_norm_drift", 0.0, run.drift.quaternion_norm, side="upper"))
-    out.append(parts.quantity("free_momentum_drift", 0.0, run.drift.free_momentum, side="upper"))
+        out.append(_figure("least_filter_state", floor.value, "s", "least R along the run"))
+    for name, label, value in (
+        ("quaternion_norm_drift", "check: |beta| leaves 1 by", run.drift.quaternion_norm),
+        ("free_momentum_drift", "check: |J w| drifts while g = 0 by", run.drift.free_momentum),
+    ):
+        out.append(parts.quantity(name, 0.0, value, label=label, side="upper"))
     return out
 
 
-def _figure(name: str, value: float, unit: str) -> dict[str, Any]:
-    return parts.figure_of(name, value, digits=6, unit=unit)
+def _figure(name: str, value: float, unit: str, label: str) -> dict[str, Any]:
+    return parts.figure_of(name, value, digits=6, unit=unit, label=label)
 
 
 def run_entry(

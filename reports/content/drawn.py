@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -11,16 +12,19 @@ from typing import Any
 
 from ..numbers import unit_text
 from .blocks import Axis, Chart, Line
-from .printable import printable
+from .printable import east_asian_font, font_names, printable
 from .wording import short
 
+LEGEND_LONGEST = 42
+"""Characters of a name a legend or an axis has room for."""
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#AA3377")
 SHADE = "#DCE9E4"
 DASHES: tuple[Any, ...] = ("-", ":", "-.", (0, (8, 2)))
 SIZE = (3.4, 2.35)
 """Inches: one column of a two-column paper."""
+LEFT, CHARACTER = 0.155, 0.02
+"""Left edge of the axes and what one more character of a tick label needs, in figure widths."""
 STYLE = {
-    "font.family": "DejaVu Sans",
     "font.size": 7.5,
     "axes.linewidth": 0.6,
     "axes.unicode_minus": True,
@@ -45,8 +49,17 @@ def style() -> Iterator[None]:
     with matplotlib.rc_context():
         matplotlib.rcdefaults()
         settings: Any = matplotlib.rcParams
-        settings.update(STYLE)
+        settings.update(STYLE | {"font.family": _families()})
         yield
+
+
+def _families() -> list[str]:
+    from matplotlib import font_manager
+
+    further = east_asian_font()
+    if further and str(further) not in {f.fname for f in font_manager.fontManager.ttflist}:
+        font_manager.fontManager.addfont(str(further))
+    return list(font_names())
 
 
 def drawings(charts: Sequence[Chart]) -> dict[str, bytes]:
@@ -88,7 +101,7 @@ def _figure(chart: Chart) -> Any:
     labels = _legend(chart)
     rows = -(-len(labels) // _columns(labels))
     bottom = 0.175 + 0.062 * rows
-    axes = figure.add_axes((0.155, bottom, 0.82, 0.965 - bottom))
+    axes = figure.add_axes((LEFT, bottom, 0.975 - LEFT, 0.965 - bottom))
     axes.grid(visible=True)
     axes.set_axisbelow(True)
     for side in ("top", "right"):
@@ -102,6 +115,7 @@ def _figure(chart: Chart) -> Any:
         )
         axes.set_xlim(edges)
     _scale(axes, chart)
+    _make_room(axes, bottom)
     _name(axes.set_xlabel, chart.x)
     _name(axes.set_ylabel, chart.y)
     if labels:
@@ -132,13 +146,23 @@ def _scale(axes: Any, chart: Chart) -> None:
         axes.margins(x=0.01)
 
 
+def _make_room(axes: Any, bottom: float) -> None:
+    """Move the left edge where the numbers on the y axis are long, so that its name is not cut."""
+    texts = axes.yaxis.get_major_formatter().format_ticks(axes.yaxis.get_majorticklocs())
+    longest = max((len(re.sub(r"\\\w+|[${}^]", "", t)) for t in texts), default=0)
+    left = LEFT + max(0, longest - 4) * CHARACTER
+    axes.set_position((left, bottom, 0.975 - left, 0.965 - bottom))
+
+
 def _name(setter: Any, axis: Axis) -> None:
     unit = f" ({short(printable(unit_text(axis.unit)), 22)})" if axis.unit else ""
-    setter(short(printable(axis.label), 48) + unit, parse_math=False)
+    setter(short(printable(axis.label), LEGEND_LONGEST) + unit, parse_math=False)
 
 
 def _legend(chart: Chart) -> list[str]:
-    return [short(printable(line.label), 42) for line in chart.lines] if len(chart.lines) > 1 else []
+    return (
+        [short(printable(line.label), LEGEND_LONGEST) for line in chart.lines] if len(chart.lines) > 1 else []
+    )
 
 
 def _columns(labels: list[str]) -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from ..numbers import number
+from ..numbers import number, unit_text
 from ..record import Record
 from .blocks import Axis, Block, Cell, Chapter, Chart, Charts, Line, Table, Text
 from .problem import shaded
@@ -20,6 +20,11 @@ COLUMNS = (
     ("name", "Bound by", ""),
     ("local", "Local optima", ""),
 )
+
+PROFILES = {"window": "full thrust inside each window", "gain": "thrust up to p g(t)"}
+"""What the record calls the thrust available, in words."""
+COARSE_DIGITS = 4
+"""Digits of what is found on one mesh and not converged: switch times, the other local optima."""
 
 
 def optimum_chapter(record: Record) -> Chapter | None:
@@ -44,7 +49,8 @@ def _row(entry: Mapping[str, Any]) -> dict[str, Cell]:
 
 
 def _terms(entry: Mapping[str, Any]) -> list[str]:
-    return [entry[key] for key in ("profile", "terminal") if entry.get(key)]
+    thrust = PROFILES.get(entry.get("profile", ""), entry.get("profile", ""))
+    return [words for words in (thrust, entry.get("terminal", "")) if words]
 
 
 def _one(record: Record, index: int, entry: Mapping[str, Any]) -> list[Block]:
@@ -59,11 +65,14 @@ def _one(record: Record, index: int, entry: Mapping[str, Any]) -> list[Block]:
     ]
     times = entry.get("switch_times", ())
     if times:
-        rows.append({"what": "Switch times", "value": ", ".join(number(t) for t in times) + " s"})
+        rows.append(
+            {"what": "Switch times", "value": ", ".join(number(t, COARSE_DIGITS) for t in times) + " s"}
+        )
     local = entry.get("local_optima")
     if local:
-        unit = f" {local['unit']}" if local.get("unit") else ""
-        rows.append({"what": "Local optima", "value": ", ".join(number(v) for v in local["values"]) + unit})
+        unit = f" {unit_text(local['unit'])}" if local.get("unit") else ""
+        values = ", ".join(number(v, COARSE_DIGITS) for v in local["values"])
+        rows.append({"what": "Local optima, before the mesh is refined", "value": values + unit})
         if "spread" in local:
             rows.append({"what": "Their spread", "value": local["spread"]})
     rows += [{"what": f"Effort: {e['label']}", "value": str(e["count"])} for e in entry.get("effort", ())]

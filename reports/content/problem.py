@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from ..record import Record
 from ..values import thaw
-from .blocks import Axis, Block, Cell, Chapter, Chart, Charts, Equations, Facts, Line, Text, Verbatim
+from .blocks import Axis, Block, Cell, Chapter, Chart, Charts, Equations, Facts, Line, Table, Text, Verbatim
 from .equations import equations_for
-from .wording import plural
+from .wording import plural, shared
 
 MOST_WINDOWS = 300
 """Windows shaded in a figure at most; beyond them the shading would be solid."""
@@ -30,13 +30,11 @@ def problem_chapter(record: Record) -> Chapter | None:
     if scenario:
         if scenario.get("description"):
             blocks.append(Text(scenario["description"]))
-        rows = [(f["label"], _fact(f)) for f in scenario.get("facts", ())]
-        for case in record.sections.get("cases", ()):
-            rows.extend(
-                (f"{case['label']}: {p.get('label') or p['name']}", p) for p in case.get("parameters", ())
-            )
-        blocks.append(Facts(tuple(rows)))
+        blocks.append(Facts(tuple((f["label"], _fact(f)) for f in scenario.get("facts", ()))))
         blocks.extend(Text(note, "note") for note in scenario.get("notes", ()))
+    parameters = _parameters(record)
+    if parameters:
+        blocks.append(parameters)
     if laws:
         blocks.append(Equations(equations_for(laws)))
         for case in record.sections.get("cases", ()):
@@ -46,8 +44,28 @@ def problem_chapter(record: Record) -> Chapter | None:
                         f"{case['label']}: the law as its author states it", "\n".join(case["equations"])
                     )
                 )
-            blocks.extend(Text(f"{case['label']}: {note}", "note") for note in case.get("notes", ()))
+        blocks.extend(Text(note, "note") for note in shared(_notes(record)))
     return Chapter("problem", "The problem", tuple(blocks)) if blocks else None
+
+
+def _parameters(record: Record) -> Table | None:
+    """One row a law, one column a parameter."""
+    cases = record.sections.get("cases", ())
+    heads = {
+        p["name"]: (p["name"], p.get("label") or p["name"], p.get("unit", ""))
+        for case in cases
+        for p in case.get("parameters", ())
+    }
+    rows = tuple(
+        {"law": case["label"]} | {p["name"]: p for p in case.get("parameters", ())} for case in cases
+    )
+    columns = (("law", "Law", ""), *heads.values())
+    return Table("parameters", "The laws and their parameters", columns, rows) if heads else None
+
+
+def _notes(record: Record) -> Iterator[tuple[str, str]]:
+    for case in record.sections.get("cases", ()):
+        yield from ((case["label"], note) for note in case.get("notes", ()))
 
 
 def _fact(fact: Mapping[str, Any]) -> Cell:
@@ -76,7 +94,8 @@ def schedule_chapter(record: Record) -> Chapter | None:
         shaded(record),
     )
     extends = {"periodic": "The table repeats for ever.", "finite": "The table ends; g is zero after it."}
-    rows = [(q.get("label") or q["name"], q) for q in schedule.get("facts", ())]
+    told = [q for claim in schedule.get("claims", ()) for q in claim["quantities"]]
+    rows = [(q.get("label") or q["name"], q) for q in (*schedule.get("facts", ()), *told)]
     blocks: list[Block] = [Charts((chart,))]
     if rows:
         blocks.append(Facts(tuple(rows)))
@@ -96,7 +115,7 @@ def provenance_chapter(record: Record) -> Chapter:
         ("Record", {"code": record.sha256}),
         ("Input", {"code": origin["input_sha256"]}),
         ("Date", origin["date"] or "not given"),
-        ("Package", f"intermit {origin['package_version']}"),
+        ("Package", f"intermit {origin['package_version'] or '(run from its source)'}"),
         ("Versions", ", ".join(f"{k} {v}" for k, v in sorted(origin["versions"].items()))),
         ("Seeds", ", ".join(f"{k} {v}" for k, v in sorted(origin["seeds"].items())) or "none"),
     ]

@@ -12,9 +12,13 @@ from ..record import Array, Record
 from .blocks import Axis, Block, Body, Chapter, Chart, Charts, Line, Replay, Table, Text
 from .problem import shaded
 from .verdicts import floors
-from .wording import plural
+from .wording import plural, shared
 
 TIME = Axis("time", "s")
+MOST_BESIDE = 5
+"""Runs that a table puts side by side."""
+WIDE = 100.0
+"""Ratio of the greatest to the least value from which a logarithmic axis says more."""
 
 
 @final
@@ -31,6 +35,11 @@ class Run:
     def array(self, role: str) -> Array | None:
         """Array in this role, if the run has it."""
         name = self.data["arrays"].get(role)
+        return None if name is None else self.record.array(name)
+
+    def controller(self, state: str) -> Array | None:
+        """Values of one controller state, if the law has it."""
+        name = self.data["arrays"].get("controller", {}).get(state)
         return None if name is None else self.record.array(name)
 
     @property
@@ -78,14 +87,22 @@ def _beside(
 
 
 def metrics_table(runs: tuple[Run, ...]) -> Table | None:
-    """One row per run, one column per metric."""
+    """Runs beside each other, one row a figure; one row a run if there are many."""
     columns: dict[str, tuple[str, str]] = {}
     for run in runs:
         for q in run.data["metrics"]:
             columns.setdefault(q["name"], (q.get("label") or q["name"], q.get("unit", "")))
     if not columns:
         return None
-    rows = tuple({"run": run.label} | {q["name"]: q for q in run.data["metrics"]} for run in runs)
+    held = [{q["name"]: q for q in run.data["metrics"]} for run in runs]
+    if len(runs) <= MOST_BESIDE:
+        heads = (("what", "Figure", ""), *((str(i), run.label, "") for i, run in enumerate(runs)))
+        lines = tuple(
+            {"what": label} | {str(i): metrics.get(name) for i, metrics in enumerate(held)}
+            for name, (label, _) in columns.items()
+        )
+        return Table("runs", "What the runs came to", heads, lines)
+    rows = tuple({"run": run.label} | metrics for run, metrics in zip(runs, held, strict=True))
     heads = (("run", "Run", ""), *((name, label, unit) for name, (label, unit) in columns.items()))
     return Table("runs", "What the runs came to", heads, rows)
 
@@ -129,41 +146,55 @@ def torque_chapter(record: Record) -> Chapter | None:
     )
     blocks: list[Block] = [table] if table else []
     blocks += [Charts(tuple(c)) for c in (applied, commanded) if c]
-    for run in runs:
-        blocks.extend(Text(f"{run.label}: {note}", "note") for note in run.data.get("notes", ()))
+    notes = ((run.label, note) for run in runs for note in run.data.get("notes", ()))
+    blocks.extend(Text(note, "note") for note in shared(notes))
     return Chapter("torque", "Torque", tuple(blocks)) if blocks else None
 
 
 def filter_chapter(record: Record) -> Chapter | None:
-    """R and k along the runs, R beside its certified floor."""
+    """R of each run beside its certified floor, on one logarithmic scale; k of all runs; other states."""
     runs = runs_of(record)
+    floors_by_case = _by_case(record, "filter_floor", "certified floor")
     charts: list[Chart] = []
-    for state, unit, words in (
-        ("R", "s", "Filter state R and its certified floor"),
-        ("k", "1/s", "Adaptive scaling k"),
-    ):
-        lines = []
-        for i, run in enumerate(runs):
-            name = run.data["arrays"].get("controller", {}).get(state)
-            if name is not None:
-                lines.append(Line(run.label, run.time, record.array(name), colour=i))
-        if state == "R":
-            lines += _certified(record, "filter_floor", ": certified floor") + _constant_floors(record)
-        if lines:
-            alt = f"{words} over time, {plural(len(lines), 'line')}."
+    for run in runs:
+        values = run.controller("R")
+        if values is not None:
+            lines = [Line("R", run.time, values), *floors_by_case.get(run.case["key"], ())]
+            words = f"Filter state R{' and its certified floor' if len(lines) > 1 else ''}"
+            log = bool(np.all(values > 0))
+            alt = f"{words} of {run.label} over time, thruster windows shaded."
+            title = f"{words}: {run.label}"
             charts.append(
                 Chart(
-                    f"state-{state.lower()}",
-                    words,
-                    TIME,
-                    Axis(state, unit),
-                    tuple(lines),
-                    alt,
-                    shaded(record),
+                    f"state-r-{run.key}", title, TIME, Axis("R", "s", log), tuple(lines), alt, shaded(record)
                 )
             )
+    scaling = [(run, run.controller("k")) for run in runs]
+    lines = [Line(run.label, run.time, k, colour=i) for i, (run, k) in enumerate(scaling) if k is not None]
+    if lines:
+        alt = f"Adaptive scaling k over time, {plural(len(lines), 'line')}."
+        charts.append(
+            Chart("state-k", "Adaptive scaling k", TIME, Axis("k", "1/s"), tuple(lines), alt, shaded(record))
+        )
     charts += _other_states(record, runs)
     return Chapter("filter", "Filter and scaling", (Charts(tuple(charts)),)) if charts else None
+
+
+def _by_case(record: Record, role: str, label: str) -> dict[str, list[Line]]:
+    """Certified curves of each law, or the level its certificate or claim states."""
+    found: dict[str, list[Line]] = {}
+    for case in record.sections.get("cases", ()):
+        holders = [c["arrays"] for c in case.get("certificates", ()) if role in c.get("arrays", {})]
+        lines = [
+            Line(label, record.array(a["time"]), record.array(a[role]), colour=1, dashed=True)
+            for a in holders
+        ]
+        known = floors(case)
+        if not lines and known and case.get("runs"):
+            t = record.array(case["runs"][0]["arrays"]["time"])[[0, -1]]
+            lines = [Line(label, t, np.full(2, float(known[0]["low"])), colour=1, dashed=True)]
+        found[case["key"]] = lines
+    return found
 
 
 def _certified(record: Record, role: str, suffix: str = "") -> list[Line]:
@@ -175,19 +206,6 @@ def _certified(record: Record, role: str, suffix: str = "") -> list[Line]:
             if role in names:
                 t, values = record.array(names["time"]), record.array(names[role])
                 lines.append(Line(case["label"] + suffix, t, values, colour=i, dashed=True))
-    return lines
-
-
-def _constant_floors(record: Record) -> list[Line]:
-    """Draw a law's certified floor as a level over its run, where the record has a number but no curve."""
-    lines = []
-    for i, case in enumerate(record.sections.get("cases", ())):
-        runs, found = case.get("runs", ()), floors(case)
-        curves = any("filter_floor" in c.get("arrays", {}) for c in case.get("certificates", ()))
-        if runs and found and not curves:
-            t = record.array(runs[0]["arrays"]["time"])[[0, -1]]
-            level = np.full(2, float(found[0]["low"]))
-            lines.append(Line(f"{case['label']}: certified floor", t, level, colour=i, dashed=True))
     return lines
 
 
@@ -228,7 +246,7 @@ def attitude_chapter(record: Record) -> Chapter | None:
 def _envelopes(record: Record, what: str) -> Iterator[Chart]:
     words = {
         "angle": ("Certified bound on the error angle", "rad"),
-        "rate": ("Certified bound on the rate", ""),
+        "rate": ("Certified bound on sqrt(Ω' J Ω)", "kg^1/2 m rad/s"),
     }[what]
     lines = _certified(record, f"{what}_bound")
     if lines:
@@ -273,7 +291,7 @@ def storage_chapter(record: Record) -> Chapter | None:
             lines = [Line(words, run.time, values)]
             if bound is not None:
                 lines.append(Line("its bound", run.time, bound, colour=1, dashed=True))
-            log = role == "storage" and bool(np.all(values > 0))
+            log = role == "storage" and float(values.max()) > WIDE * float(values.min()) > 0
             alt = f"{words} of {run.label} along the run{' with its bound' if bound is not None else ''}."
             title = f"{words}: {run.label}"
             axis = Axis("V" if role == "storage" else "V'", unit, log)

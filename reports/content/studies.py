@@ -18,7 +18,8 @@ _ROLE_COLOUR = {"bound": 2, "optimum": 3}
 
 def chart_from(record: Record, figure: Mapping[str, Any], key: str) -> Chart:
     """Read a record's own figure."""
-    lines, free = [], cycle((0, 1, 4, 5, 6, 7))
+    taken = {_ROLE_COLOUR[s["role"]] for s in figure["series"] if s.get("role", "") in _ROLE_COLOUR}
+    lines, free = [], cycle([c for c in range(8) if c % 4 not in taken])
     for s in figure["series"]:
         role = s.get("role", "")
         colour = _ROLE_COLOUR[role] if role in _ROLE_COLOUR else next(free)
@@ -72,7 +73,7 @@ def samples_chapter(record: Record) -> Chapter | None:
         return None
     blocks: list[Block] = [Text("Samples support a claim; they never prove it.", "note")]
     for i, entry in enumerate(entries):
-        rows: list[tuple[str, Cell]] = [("Samples", str(entry["count"]))]
+        rows: list[tuple[str, Cell]] = [("Samples", f"{entry['count']:,}")]
         rows += [
             (words, str(entry[k]))
             for k, words in (("coverage", "Drawn from"), ("seed", "Seed"), ("statement", "Found"))

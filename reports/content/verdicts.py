@@ -50,6 +50,12 @@ COLLECTIONS = {
 }
 
 
+def claim_numbers(claim: Mapping[str, Any]) -> tuple[Mapping[str, Any], ...]:
+    """Numbers the verdict table shows: the margins, or without any the first rigorous quantity."""
+    rigorous = [q for q in claim["quantities"] if q.get("rigorous")][:1]
+    return tuple(claim["margins"] or rigorous)
+
+
 def counted(claims: tuple[Mapping[str, Any], ...]) -> tuple[tuple[str, int], ...]:
     """How many of the claims that count have each verdict."""
     deciding = [c["verdict"] for c in claims if c.get("counted", True)]
@@ -70,9 +76,10 @@ def answer(record: Record) -> str:
 def verdict_chapter(record: Record) -> Chapter:
     """Cards, then the table."""
     blocks: list[Block] = []
-    cards = tuple(_card(case) for case in record.sections.get("cases", ()))
-    sentence = record.document.get("outcome", {}).get("sentence", "")
-    if sentence:
+    cards = tuple(_card(case, record) for case in record.sections.get("cases", ()))
+    outcome = record.document.get("outcome", {})
+    sentence = outcome.get("sentence", "")
+    if sentence and outcome.get("exit_code"):  # where all is proved it would only repeat the heading
         blocks.append(Text(sentence))
     if cards:
         blocks.append(Cards(cards))
@@ -93,14 +100,24 @@ def _others(claims: tuple[Mapping[str, Any], ...]) -> str:
     return f"Also found, not counted in the outcome: {', '.join(parts)}"
 
 
-def _card(case: Mapping[str, Any]) -> Card:
+def _card(case: Mapping[str, Any], record: Record) -> Card:
     numbers = [dict(q) | {"label": "certified floor of R"} for q in floors(case)][:1]
     for run in case.get("runs", ())[:1]:
         by_name = {q["name"]: q for q in run["metrics"]}
         numbers += [
             dict(by_name[name]) | {"label": label} for name, label in HEADLINE_NUMBERS if name in by_name
         ]
+    numbers += _ratios(case["label"], record)
     return Card(case["label"], counted(tuple(case.get("claims", ()))), tuple(numbers))
+
+
+def _ratios(label: str, record: Record) -> list[dict[str, Any]]:
+    """The law's peak over the least any controller needs, in the first norm compared."""
+    for table in record.sections.get("comparison", {}).get("tables", ()):
+        for row in table["rows"]:
+            if row.get("law") == label and isinstance(row.get("ratio"), Mapping):
+                return [dict(row["ratio"]) | {"label": "peak over the least possible"}]
+    return []
 
 
 def floors(case: Mapping[str, Any]) -> list[Mapping[str, Any]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 
 LONGEST_LABEL = 60
 """Characters of a name kept inside a figure; the full name stands in the text."""
@@ -56,3 +57,11 @@ def _picture(c: str) -> str:
 def plural(count: int, word: str) -> str:
     """Count and word: "1 claim", "3 claims"."""
     return f"{count} {word}" if count == 1 else f"{count} {word}s"
+
+
+def shared(notes: Iterable[tuple[str, str]]) -> tuple[str, ...]:
+    """Notes with the name they are about; a note that several names share is said once."""
+    by_note: dict[str, list[str]] = {}
+    for name, note in notes:
+        by_note.setdefault(note, []).append(name)
+    return tuple(f"{', '.join(names)}: {note}" for note, names in by_note.items())

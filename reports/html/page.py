@@ -12,13 +12,13 @@ from typing import Any
 
 from markupsafe import Markup
 
-from ..content.blocks import Cell, Chapter, Replay, charts_of
+from ..content.blocks import Cell, Chapter, Chart, Replay, charts_of
 from ..content.budget import thin
+from ..content.heading import Heading
 from ..content.typeset import equation_svgs
-from ..content.verdicts import answer
-from ..content.wording import short, visible
+from ..content.verdicts import claim_numbers
+from ..content.wording import LONGEST_LABEL, short, visible
 from ..numbers import number, unit_text, write
-from ..record import Record
 from ..values import thaw
 from .plotly import figure
 from .replay import replay_data
@@ -28,15 +28,8 @@ POINT_BUDGET = 100_000
 PLOTLY = "vendor/plotly-basic-4.1.1.min.js"
 
 
-def html_page(record: Record, chapters: tuple[Chapter, ...]) -> str:
+def html_page(heading: Heading, chapters: tuple[Chapter, ...]) -> str:
     """Render the whole page as one string."""
-    return render(record.document["title"], answer(record), record, chapters)
-
-
-def render(
-    title: str, sentence: str, record: Record, chapters: tuple[Chapter, ...], *, other: Record | None = None
-) -> str:
-    """Render chapters under a title; with `other`, as the comparison of two records."""
     charts = thin(charts_of(chapters), POINT_BUDGET)
     figures = {c.key: i for i, c in enumerate(charts)}
     replays = [b for chapter in chapters for b in chapter.blocks if isinstance(b, Replay)]
@@ -48,11 +41,7 @@ def render(
         _environment()
         .get_template("page.html.j2")
         .render(
-            title=title,
-            sentence=sentence,
-            status=overall(record) if other is None else "",
-            origin=record.document["provenance"],
-            digest=record.sha256 + (f" and {other.sha256}" if other is not None else ""),
+            heading=heading,
             chapters=chapters,
             figures=figures,
             policy=_policy(scripts),
@@ -62,12 +51,6 @@ def render(
         )
     )
     return page
-
-
-def overall(record: Record) -> str:
-    """Name the outcome the exit code stands for."""
-    code = record.document.get("outcome", {}).get("exit_code")
-    return {0: "PROVED", 1: "REFUTED", 3: "UNDECIDED"}.get(code, "")
 
 
 def script_json(data: Any) -> str:
@@ -107,6 +90,8 @@ def _environment() -> Any:
     )
     environment.filters.update(
         cell=html_cell,
+        cut=cut_names,
+        numbers=claim_numbers,
         number=html_number,
         unit=unit_text,
         short=short,
@@ -116,6 +101,12 @@ def _environment() -> Any:
         detail=detail_text,
     )
     return environment
+
+
+def cut_names(chart: Chart) -> tuple[str, ...]:
+    """Names a figure shows only the beginning of."""
+    names = [line.label for line in chart.lines] if len(chart.lines) > 1 else []
+    return tuple(dict.fromkeys(n for n in (*names, chart.x.label, chart.y.label) if len(n) > LONGEST_LABEL))
 
 
 def html_number(quantity: Mapping[str, Any], *, unit: bool = True) -> Markup:

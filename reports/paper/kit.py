@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from ..content.blocks import (
     Card,
     Cards,
+    Cell,
     Chapter,
     Equations,
     Facts,
@@ -16,10 +17,10 @@ from ..content.blocks import (
     charts_of,
     tables_of,
 )
-from ..content.problem import problem_chapter
-from ..content.verdicts import answer
-from ..content.wording import short
-from ..record import Record
+from ..content.drawn import LEGEND_LONGEST
+from ..content.heading import Heading
+from ..content.names import FullNames
+from ..content.verdicts import claim_numbers
 from .latex import cell, text, unit
 from .pgfplots import plots
 
@@ -38,33 +39,52 @@ PREAMBLE = r"""\documentclass{article}
 """
 
 
+NARROW = 200
+"""Characters of a name in a table that cannot break over pages."""
+
+
 def paper_files(
-    record: Record, chapters: tuple[Chapter, ...], drawings: Mapping[str, bytes]
+    heading: Heading, chapters: tuple[Chapter, ...], drawings: Mapping[str, bytes]
 ) -> dict[str, bytes]:
     """Every file of the kit by path inside it; `drawings` holds "<key>.svg" and "<key>.pdf"."""
-    tables = {"verdicts": verdict_table(chapters)} | _laws(chapters)
-    tables |= {t.key: booktabs(t) for t in tables_of(chapters)}
-    tables |= _scenario(record)
+    names = FullNames()
+    tables = {"verdicts": verdict_table(chapters, names)} | _laws(chapters, names)
+    tables |= {t.key: booktabs(t, names) for t in tables_of(chapters)}
+    tables |= _scenario(chapters, names)
     files = {f"tables/{name}.tex": body for name, body in tables.items() if body}
     for chart in charts_of(chapters):
         files |= {f"figures/{name}": body for name, body in plots(chart, "figures").items()}
     equations = _equations(chapters)
     if equations:
         files["equations.tex"] = equations
-    files["kit.tex"] = _article(
-        record, chapters, tuple(n for n, body in tables.items() if body), bool(equations)
-    )
+    body = _body(chapters, tuple(n for n, body in tables.items() if body), names)
+    files["kit.tex"] = _article(heading, body, names, equations=bool(equations))
+    if names.entries:
+        files["names.tex"] = "".join(
+            rf"\paragraph{{{text(number)}}} {text(whole)}" + "\n\n" for number, whole in names.entries
+        )
     out = {name: body.encode("ascii") for name, body in files.items()}
     return out | {f"figures/{name}": data for name, data in drawings.items()}
 
 
-def booktabs(table: Table) -> str:
+def booktabs(table: Table, names: FullNames) -> str:
     """One table as a booktabs tabular, to be put into the paper's own float."""
     share = 0.94 / max(len(table.columns), 1)
     columns = "".join(rf"p{{{share - 0.018:.3f}\linewidth}}" for _ in table.columns)
-    heads = [text(label) + (f" (${unit(u)}$)" if u else "") for _, label, u in table.columns]
-    rows = [[cell(row.get(key), u) for key, _, u in table.columns] for row in table.rows]
-    return tabular(columns, heads, rows, tuple(text(n) for n in table.notes))
+    heads = [
+        text(names.brief(label, NARROW)) + (f" (${unit(u)}$)" if u else "") for _, label, u in table.columns
+    ]
+    rows = [[cell(_cut(row.get(key), names), u) for key, _, u in table.columns] for row in table.rows]
+    return tabular(columns, heads, rows, tuple(text(names.brief(n)) for n in table.notes))
+
+
+def _cut(value: Cell, names: FullNames) -> Cell:
+    """Mark a long text: a tabular cannot break over pages."""
+    if isinstance(value, str):
+        return names.brief(value, NARROW)
+    if isinstance(value, Mapping):
+        return {k: names.brief(v, NARROW) if k in {"text", "code"} else v for k, v in value.items()}
+    return value
 
 
 def tabular(columns: str, heads: list[str], rows: list[list[str]], notes: tuple[str, ...] = ()) -> str:
@@ -80,7 +100,7 @@ def _row(cells: list[str], *, bold: bool = False) -> str:
     return " & ".join(rf"\raggedright {weight}{{}}{c}" for c in cells) + r" \tabularnewline"
 
 
-def verdict_table(chapters: tuple[Chapter, ...]) -> str:
+def verdict_table(chapters: tuple[Chapter, ...], names: FullNames) -> str:
     """Claims, verdicts and margins."""
     groups: tuple[Group, ...] = ()
     for chapter in chapters:
@@ -89,15 +109,16 @@ def verdict_table(chapters: tuple[Chapter, ...]) -> str:
     rows = []
     for group in groups:
         for _, claim in (*group.entries(counted=True), *group.entries(counted=False)):
-            margins = "; ".join(cell(q) for q in claim["margins"]) or "--"
+            margins = "; ".join(cell(q) for q in claim_numbers(claim)) or "--"
             verdict = cell({"verdict": claim["verdict"]})
-            rows.append([text(short(group.label, 300)), text(short(claim["title"], 300)), verdict, margins])
+            of, title = (text(names.brief(x, NARROW)) for x in (group.label, claim["title"]))
+            rows.append([of, title, verdict, margins])
     widths = ("0.24", "0.33", "0.16", "0.19")
     columns = "".join(rf"p{{{w}\linewidth}}" for w in widths)
     return tabular(columns, ["Of", "Claim", "Verdict", "Margin"], rows) if rows else ""
 
 
-def _laws(chapters: tuple[Chapter, ...]) -> dict[str, str]:
+def _laws(chapters: tuple[Chapter, ...], full: FullNames) -> dict[str, str]:
     cards: tuple[Card, ...] = ()
     for chapter in chapters:
         for block in chapter.blocks:
@@ -109,15 +130,15 @@ def _laws(chapters: tuple[Chapter, ...]) -> dict[str, str]:
         return {}
     columns = (("law", "Law", ""), *((name, label, u) for name, (label, u) in names.items()))
     rows = tuple({"law": card.label} | {q["name"]: q for q in card.numbers} for card in cards)
-    return {"laws": booktabs(Table("laws", "Laws", columns, rows))}
+    return {"laws": booktabs(Table("laws", "Laws", columns, rows), full)}
 
 
-def _scenario(record: Record) -> dict[str, str]:
-    chapter = problem_chapter(record)
-    rows = [r for b in (chapter.blocks if chapter else ()) if isinstance(b, Facts) for r in b.rows]
+def _scenario(chapters: tuple[Chapter, ...], names: FullNames) -> dict[str, str]:
+    given = (c.blocks for c in chapters if c.key == "problem")
+    rows = [r for blocks in given for b in blocks if isinstance(b, Facts) for r in b.rows]
     if not rows:
         return {}
-    body = [[text(label), cell(value)] for label, value in rows]
+    body = [[text(names.brief(label, NARROW)), cell(_cut(value, names))] for label, value in rows]
     return {"scenario": tabular(r"p{0.36\linewidth}p{0.56\linewidth}", ["Given", "Value"], body)}
 
 
@@ -126,22 +147,31 @@ def _equations(chapters: tuple[Chapter, ...]) -> str:
     return "".join(f"% {e.title}\n\\begin{{equation}}\n{e.latex}\n\\end{{equation}}\n" for e in held)
 
 
-def _article(record: Record, chapters: tuple[Chapter, ...], tables: tuple[str, ...], equations: bool) -> str:
-    origin = record.document["provenance"]
-    head = [
-        PREAMBLE,
-        rf"\title{{{text(record.document['title'])}}}",
-        rf"\author{{{text(origin.get('author', ''))}}}",
-        rf"\date{{{text(origin['date'])}}}",
-        r"\begin{document}",
-        r"\maketitle",
-        rf"\noindent {text(answer(record))} Record \texttt{{{text(record.sha256)}}}.",
-        r"\input{equations}" if equations else "",
-    ]
+def _body(chapters: tuple[Chapter, ...], tables: tuple[str, ...], names: FullNames) -> list[str]:
+    """Every table, then every figure twice: as drawn, and as pgfplots."""
     body = [rf"\begin{{center}}\small\input{{tables/{name}}}\end{{center}}" for name in tables]
     for chart in charts_of(chapters):
-        caption = rf"\par\smallskip{{\small {text(short(chart.title, 300))}}}\par\bigskip"
+        said = " ".join([names.brief(chart.title), *names.of_chart(chart, LEGEND_LONGEST)])
+        caption = rf"\par\smallskip{{\small {text(said)}}}\par\bigskip"
         drawn = rf"\includegraphics[width=0.48\linewidth]{{figures/{chart.key}.pdf}}"
         plotted = rf"\begin{{minipage}}[b]{{0.48\linewidth}}\input{{figures/{chart.key}.tex}}\end{{minipage}}"
         body.append(rf"\par\noindent {drawn}\hfill {plotted}{caption}")
-    return "\n".join([*head, *body, r"\end{document}", ""])
+    return body
+
+
+def _article(heading: Heading, body: list[str], names: FullNames, *, equations: bool) -> str:
+    title, author, sentence = (
+        text(names.brief(x)) for x in (heading.title, heading.author, heading.sentence)
+    )
+    head = [
+        PREAMBLE,
+        rf"\title{{{title}}}",
+        rf"\author{{{author}}}",
+        rf"\date{{{text(heading.date)}}}",
+        r"\begin{document}",
+        r"\maketitle",
+        rf"\noindent {sentence} Record \texttt{{{text(heading.digest)}}}.",
+        r"\input{equations}" if equations else "",
+    ]
+    tail = [r"\section*{Names in full}", r"\input{names}"] if names.entries else []
+    return "\n".join([*head, *body, *tail, r"\end{document}", ""])

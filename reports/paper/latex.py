@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from ..content.blocks import Cell
 from ..content.wording import visible
-from ..numbers import number, write
+from ..numbers import ROOT, number, write
 
 SPECIAL = {
     "\\": r"\textbackslash{}",
@@ -94,6 +94,11 @@ def unit(name: str) -> str:
     out, i = "", 0
     while i < len(name):
         c = name[i]
+        root = ROOT.match(name, i)
+        if root and not name[:i][-1:].isalpha():
+            out += rf"\sqrt{{\mathrm{{{root[1]}}}}}"
+            i = root.end()
+            continue
         if c == "^" and i + 1 < len(name) and (name[i + 1].isdigit() or name[i + 1] == "-"):
             j = i + 2
             while j < len(name) and name[j].isdigit():

@@ -54,6 +54,7 @@
       shapes: chart.windows.map(function (w) {
         return { type: "rect", xref: "x", yref: "paper", x0: w[0], x1: w[1], y0: 0, y1: 1, fillcolor: shade, line: { width: 0 }, layer: "below" };
       }) };
+    if (lines.length > 4) element.style.height = 300 + 19 * (lines.length - 3) + "px";
     if (printing) layout.width = 660;
     if (!printing && chart.timed && element.closest(".charts").range) layout.xaxis.range = element.closest(".charts").range.slice();
     const first = !element.dataset.drawn;

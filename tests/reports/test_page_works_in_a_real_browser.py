@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 from intermit.reports import Record
 from intermit.reports.content.chapters import chapters
+from intermit.reports.content.heading import heading
 from intermit.reports.html import html_page
 from outside_tools import need, need_module
 from synthetic_record import respoken
@@ -33,7 +34,7 @@ def chromium() -> Iterator[Any]:
 @pytest.fixture(scope="module")
 def report(record: Record, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("page") / "report.html"
-    path.write_text(html_page(record, chapters(record)), encoding="utf-8")
+    path.write_text(html_page(heading(record), chapters(record)), encoding="utf-8")
     return path
 
 
@@ -224,7 +225,7 @@ def test_hostile_names_do_nothing(chromium: Any, record: Record, tmp_path: Path)
     attack = "</script><script>window.hit=1</script><img src=x onerror='window.hit=1'><b>&amp;%{y}"
     path = tmp_path / "hostile.html"
     attacked = respoken(record, attack)
-    path.write_text(html_page(attacked, chapters(attacked)), encoding="utf-8")
+    path.write_text(html_page(heading(attacked), chapters(attacked)), encoding="utf-8")
     opened = Visit(chromium, path, viewport={"width": 1280, "height": 900})
     assert opened.page.evaluate("window.hit") is None
     assert opened.page.locator("h1").inner_text() == attack

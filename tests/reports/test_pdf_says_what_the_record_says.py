@@ -14,6 +14,7 @@ from intermit.reports.content.blocks import charts_of
 from intermit.reports.content.budget import thin
 from intermit.reports.content.chapters import chapters
 from intermit.reports.content.drawn import drawings, pdf_figures
+from intermit.reports.content.heading import heading
 from intermit.reports.content.printable import printable
 from intermit.reports.numbers import write
 from intermit.reports.pdf import pdf_document
@@ -26,7 +27,7 @@ pypdf = pytest.importorskip("pypdf")
 
 def pdf_of(record: Record) -> bytes:
     contents = chapters(record)
-    return pdf_document(record, contents, drawings(thin(charts_of(contents), DRAWN_POINTS)))
+    return pdf_document(heading(record), contents, drawings(thin(charts_of(contents), DRAWN_POINTS)))
 
 
 def squeezed(text: str) -> str:

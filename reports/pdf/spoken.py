@@ -1,0 +1,238 @@
+"""Blocks as plain data for the PDF's template: every text made drawable, every long name marked."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from functools import singledispatch
+from typing import Any
+
+from ..content.blocks import (
+    Block,
+    Cards,
+    Cell,
+    Charts,
+    ClaimDetails,
+    Equations,
+    Facts,
+    Replay,
+    Table,
+    Text,
+    Verbatim,
+    Verdicts,
+)
+from ..content.drawn import LEGEND_LONGEST
+from ..content.names import FullNames
+from ..content.printable import directed, printable
+from ..content.studies import values_text
+from ..content.verdicts import claim_numbers
+from ..numbers import number, unit_text, write
+from ..values import thaw
+
+BREAK_EVERY = 24
+"""Characters of an unbroken word after which a line may break."""
+
+
+def words(text: str) -> str:
+    """Text as the PDF sets it: drawable, in its own direction, breakable inside long words."""
+    return directed("".join(_breakable(w) for w in _split(printable(text))))
+
+
+def _split(text: str) -> list[str]:
+    parts, current = [], ""
+    for c in text:
+        if c.isspace():
+            parts += [current, c]
+            current = ""
+        else:
+            current += c
+    return [*parts, current]
+
+
+def _breakable(word: str) -> str:
+    if len(word) <= BREAK_EVERY:
+        return word
+    return "\u200b".join(word[i : i + BREAK_EVERY] for i in range(0, len(word), BREAK_EVERY))
+
+
+def cell(value: Cell, column_unit: str = "") -> dict[str, Any]:
+    """One cell: its text and how it is set."""
+    if value is None:
+        return {"text": "–"}
+    if isinstance(value, str):
+        return {"text": words(value)}
+    if "verdict" in value:
+        return {"verdict": value["verdict"], "text": words(value.get("text", ""))}
+    if "code" in value:
+        return {"code": words(value["code"])}
+    if "matrix" in value:
+        return {
+            "matrix": [[number(x, 12) for x in row] for row in value["matrix"]],
+            "text": words(unit_text(value["unit"])),
+        }
+    written = write(value, unit=not column_unit or column_unit != value.get("unit"))
+    return {
+        "text": words(written.text.replace(" ", "\u00a0")),
+        "rigorous": written.rigorous and not written.missing,
+    }
+
+
+@singledispatch
+def spoken(block: Block, names: FullNames) -> dict[str, Any] | None:
+    """Turn a block into data for the template; the replay has no place on paper."""
+    del names
+    raise TypeError(f"no rule to print a {type(block).__name__}")
+
+
+@spoken.register
+def _(block: Replay, names: FullNames) -> None:
+    del block, names
+
+
+@spoken.register
+def _(block: Text, names: FullNames) -> dict[str, Any]:
+    del names
+    return {"kind": "text", "text": words(block.text), "style": block.kind}
+
+
+@spoken.register
+def _(block: Cards, names: FullNames) -> dict[str, Any]:
+    labels = {
+        q["name"]: words(names.brief(q.get("label") or q["name"])) for c in block.cards for q in c.numbers
+    }
+    rows = []
+    for card in block.cards:
+        held = {q["name"]: cell(q) for q in card.numbers}
+        counts = ", ".join(f"{n} {v}" for v, n in card.verdicts)
+        cells = [held.get(n, {"text": "–"}) for n in labels]
+        rows.append({"label": words(names.brief(card.label)), "counts": counts, "cells": cells})
+    return {"kind": "cards", "names": list(labels.values()), "rows": rows}
+
+
+@spoken.register
+def _(block: Verdicts, names: FullNames) -> dict[str, Any]:
+    groups = [
+        {"label": words(names.brief(g.label)), "claims": [_claim(c, names) for _, c in held]}
+        for g in block.groups
+        if (held := g.entries(counted=block.counted))
+    ]
+    return {"summary": words(block.summary), "kind": "verdicts", "groups": groups}
+
+
+def _claim(claim: Mapping[str, Any], names: FullNames) -> dict[str, Any]:
+    def brief(text: str) -> str:
+        return words(names.brief(text))
+
+    why = claim.get("reason", "") if claim["verdict"] == "UNDECIDED" else ""
+    if claim.get("witness"):
+        why = f"refuted: {claim['witness']['description']}"
+    return {
+        "title": brief(claim["title"]),
+        "statement": brief(claim["statement"]),
+        "verdict": claim["verdict"],
+        "margins": [[brief(q.get("label") or q["name"]), cell(q)] for q in claim_numbers(claim)],
+        "evidence": [[e["kind"], brief(e["summary"])] for e in claim["evidence"]],
+        "why": brief(why),
+        "recheck": brief(claim.get("recheck", "")),
+        "source": brief(claim.get("source", "")),
+    }
+
+
+@spoken.register
+def _(block: ClaimDetails, names: FullNames) -> dict[str, Any]:
+    groups = [
+        {"label": words(names.brief(g.label)), "claims": [_details(c, names) for c in g.claims]}
+        for g in block.groups
+    ]
+    return {"kind": "details", "groups": groups}
+
+
+def _details(claim: Mapping[str, Any], names: FullNames) -> dict[str, Any]:
+    rows: list[tuple[str, dict[str, Any]]] = [("Key", {"code": words(claim["key"])})]
+    rows += [(_label(q, names), cell(q)) for q in claim["quantities"]]
+    rows += [("Margin: " + _label(q, names), cell(q)) for q in claim["margins"]]
+    for e in claim["evidence"]:
+        source = f" ({e['source']})" if e.get("source") else ""
+        rows.append((f"Evidence: {e['kind']}", {"text": words(e["summary"] + source)}))
+        rows += [
+            ("  " + words(names.brief(k)), {"code": words(_json(v))})
+            for k, v in sorted(e.get("details", {}).items())
+        ]
+    if claim.get("witness"):
+        witness = claim["witness"]
+        rows.append(("Witness", {"text": words(witness["description"])}))
+        rows += [
+            ("  " + words(names.brief(k)), {"code": words(values_text(v))})
+            for k, v in sorted(witness["values"].items())
+        ]
+        rows.append(("  " + _label(witness["violation"], names, "violation"), cell(witness["violation"])))
+    named = (("reason", "Why"), ("next_step", "Next step"), ("source", "Source"), ("recheck", "Check again"))
+    rows += [(label, {"text": words(claim[key])}) for key, label in named if claim.get(key)]
+    return {
+        "title": words(names.brief(claim["title"])),
+        "verdict": claim["verdict"],
+        "statement": words(claim["statement"]),
+        "rows": rows,
+    }
+
+
+def _label(quantity: Mapping[str, Any], names: FullNames, otherwise: str = "") -> str:
+    return words(names.brief(quantity.get("label") or otherwise or quantity["name"]))
+
+
+def _json(value: Any) -> str:
+    return value if isinstance(value, str) else json.dumps(thaw(value), sort_keys=True, ensure_ascii=False)
+
+
+@spoken.register
+def _(block: Facts, names: FullNames) -> dict[str, Any]:
+    rows = [[words(names.brief(label)), cell(v)] for label, v in block.rows]
+    return {"kind": "facts", "title": words(names.brief(block.title)), "rows": rows}
+
+
+@spoken.register
+def _(block: Table, names: FullNames) -> dict[str, Any]:
+    heads = [
+        words(names.brief(label)) + (f" ({words(names.brief(unit_text(unit), 40))})" if unit else "")
+        for _, label, unit in block.columns
+    ]
+    rows = [[_table_cell(row.get(key), unit, names) for key, _, unit in block.columns] for row in block.rows]
+    title, notes = words(names.brief(block.title)), [words(n) for n in block.notes]
+    return {"kind": "table", "title": title, "heads": heads, "rows": rows, "notes": notes}
+
+
+def _table_cell(value: Cell, unit: str, names: FullNames) -> dict[str, Any]:
+    """Set a cell of a narrow column: a long text is marked."""
+    if isinstance(value, str):
+        return {"text": words(names.brief(value))}
+    if isinstance(value, Mapping) and "code" in value:
+        return {"code": words(names.brief(value["code"]))}
+    if isinstance(value, Mapping) and "verdict" in value:
+        return {"verdict": value["verdict"], "text": words(names.brief(value.get("text", "")))}
+    return cell(value, unit)
+
+
+@spoken.register
+def _(block: Equations, names: FullNames) -> dict[str, Any]:
+    del names
+    held = [{"title": e.title, "typst": e.typst, "alt": e.latex} for e in block.equations]
+    return {"kind": "equations", "equations": held}
+
+
+@spoken.register
+def _(block: Verbatim, names: FullNames) -> dict[str, Any]:
+    return {"kind": "verbatim", "title": words(names.brief(block.title)), "text": words(block.text)}
+
+
+@spoken.register
+def _(block: Charts, names: FullNames) -> dict[str, Any]:
+    charts = [
+        {
+            "file": f"{c.key}.svg",
+            "title": words(names.brief(c.title)),
+            "alt": words(names.brief(c.alt)),
+            "cut": [words(n) for n in names.of_chart(c, LEGEND_LONGEST)],
+        }
+        for c in block.charts
+    ]
+    return {"kind": "charts", "charts": charts}
