@@ -31,6 +31,12 @@ def run(
     margins: Annotated[
         bool, typer.Option("--margins/--no-margins", help="Look for how far the schedule may change.")
     ] = True,
+    front: Annotated[
+        bool, typer.Option("--front/--no-front", help="The front that the scenario's [report] asks for.")
+    ] = True,
+    audit: Annotated[
+        bool, typer.Option("--audit/--no-audit", help="The audit that the scenario's [report] asks for.")
+    ] = True,
     force: Annotated[bool, typer.Option("--force", help="Write among files of another's making.")] = False,
     debug: Debug = False,
 ) -> int:
@@ -56,13 +62,15 @@ def run(
 
         code, folder = rebuild_report(records[0], out, force=force)
     else:
-        code, folder = _study(sources[0], out, (optimum, compare, margins), (date, author), force)
+        code, folder = _study(
+            sources[0], out, (optimum, compare, margins, front, audit), (date, author), force
+        )
     note(f"{folder / 'report.html'}: {perf_counter() - began:.1f} s")
     return code
 
 
 def _study(
-    source: Path, out: Path, wanted: tuple[bool, bool, bool], given: tuple[str, str], force: bool
+    source: Path, out: Path, wanted: tuple[bool, ...], given: tuple[str, str], force: bool
 ) -> tuple[int, Path]:
     from ..reports.build import exit_code, write_report
     from ..reports.folder import refuse
@@ -77,7 +85,9 @@ def _study(
     for warning in scenario.warnings:
         note(f"warning: {warning}")
     check = CheckOptions(margins=wanted[2], workers=2)
-    options = ReportOptions(optimum=wanted[0], comparison=wanted[1], check=check)
+    options = ReportOptions(
+        optimum=wanted[0], comparison=wanted[1], front=wanted[3], audit=wanted[4], check=check
+    )
     studies: list[CheckStudy] = []
     with progress(scenario.name) as step:
         record = run_report(

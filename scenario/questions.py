@@ -1,11 +1,11 @@
-"""The tables that say what is asked of a scenario: check, optimum, compare, tune, study."""
+"""The tables that say what is asked of a scenario: check, optimum, compare, tune, study, report."""
 
 from __future__ import annotations
 
 from fractions import Fraction
 from typing import Any, Literal
 
-from pydantic import field_validator
+from pydantic import StrictBool, field_validator
 
 from .exact import Count, Exact, NotNegative, Positive, Seed, Text
 from .table import Table
@@ -100,3 +100,17 @@ class StudyTable(Table):
             if duty >= 1:
                 raise ValueError(f"a duty cycle must be < 1, received {float(duty):g}")
         return value
+
+
+class ReportTable(Table):
+    """[report]: what a report holds beside check, optimum and comparison.
+
+    `audit`: the audit of the paper's printed equations. `front`: settling times, s, of a front of peak
+    torque against settling time (default: no front), in the norm `front_norm`, each law searched with
+    `front_evaluations` simulated candidates at each time.
+    """
+
+    audit: StrictBool = False
+    front: tuple[Positive, ...] = ()
+    front_norm: Norm = "euclidean"
+    front_evaluations: Count = 1000

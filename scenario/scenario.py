@@ -15,7 +15,7 @@ from .errors import ScenarioError, quote
 from .fingerprint import fingerprint
 from .initial import InitialSet, InitialState
 from .laws import LawChoice
-from .questions import CheckTable, CompareTable, OptimumTable, StudyTable, TuneTable
+from .questions import CheckTable, CompareTable, OptimumTable, ReportTable, StudyTable, TuneTable
 from .schedules import ScheduleChoice
 from .schema import LimitsTable, ScenarioFile, SimulationTable, ToleranceTable
 from .validate import validate
@@ -42,7 +42,7 @@ class Scenario:
     initial : state at t = 0, as an error from the target attitude
     initial_set : set of states over which claims are made
     laws : the laws, not yet built, in the file's order
-    tolerance, simulation, limits, check, optimum, compare, tune, study : the tables of those names
+    tolerance, simulation, limits, check, optimum, compare, tune, study, report : the tables of those names
     warnings : one line each; nothing in them stops a run
     sha256 : hash of what the scenario says, files it names included
     """
@@ -65,6 +65,7 @@ class Scenario:
     compare: CompareTable
     tune: TuneTable
     study: StudyTable
+    report: ReportTable
     warnings: tuple[str, ...]
     sha256: str
 
@@ -145,6 +146,7 @@ def build_scenario(file: ScenarioFile, document: Document) -> Scenario:
         compare=file.compare,
         tune=file.tune,
         study=file.study,
+        report=file.report,
         warnings=warnings,
         sha256=fingerprint(file, _attachments(file, document, choices)),
     )

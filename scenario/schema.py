@@ -12,7 +12,7 @@ from typing import Any, Literal
 from pydantic import Field, StrictBool, field_validator
 
 from .exact import Count, Exact, Matrix, NotNegative, Positive, Text, Vector, exact
-from .questions import CheckTable, CompareTable, OptimumTable, StudyTable, TuneTable
+from .questions import CheckTable, CompareTable, OptimumTable, ReportTable, StudyTable, TuneTable
 from .table import Table
 
 Norm = Literal["component", "euclidean"]
@@ -165,6 +165,7 @@ class ScenarioFile(Table):
     compare: CompareTable = CompareTable()
     tune: TuneTable = TuneTable()
     study: StudyTable = StudyTable()
+    report: ReportTable = ReportTable()
 
     @field_validator("law", mode="before")
     @classmethod

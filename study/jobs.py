@@ -161,12 +161,12 @@ def crew(jobs: int, workers: int, tell: Progress) -> Iterator[Crew]:
     if others < 1:
         yield Crew(None, 0, jobs, tell)
         return
-    with _one_thread_each(), get_context("spawn").Pool(others, initializer=_ready) as pool:
+    with one_thread_each(), get_context("spawn").Pool(others, initializer=ignore_interrupt) as pool:
         yield Crew(pool, others, jobs, tell)
 
 
 @contextmanager
-def _one_thread_each() -> Iterator[None]:
+def one_thread_each() -> Iterator[None]:
     """Start new processes with one BLAS thread: on small matrices more only get in each other's way."""
     missing = [name for name in THREADS if name not in os.environ]
     os.environ.update(dict.fromkeys(missing, "1"))
@@ -177,6 +177,6 @@ def _one_thread_each() -> Iterator[None]:
             del os.environ[name]
 
 
-def _ready() -> None:
+def ignore_interrupt() -> None:
     """An interrupt is for the parent, which ends its workers."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -55,15 +55,18 @@ def run_tuning(
 
 def run_front(
     scenario: Scenario, settles: Sequence[Fraction], *, norm: NormName | None = None,
-    executor: Executor | None = None,
+    evaluations: int | None = None, executor: Executor | None = None,
 ) -> Front:  # fmt: skip
-    """Tune every law for every settling time, beside the optimum and its certified bound."""
+    """Tune every law for every settling time, beside the optimum and its certified bound.
+
+    `norm` and `evaluations` come from the scenario's [tune] where they are not given.
+    """
     return pareto_front(
         {choice.label: choice.build() for choice in scenario.laws},
         task_of(scenario),
         settles,
         norm=norm or scenario.tune.norm,
-        method=_method(scenario, None),
+        method=_method(scenario, None, evaluations),
         certify={
             c.label: found for c in scenario.laws if (found := conditions_on(scenario, c)) is not None
         },
@@ -85,8 +88,8 @@ def conditions_on(scenario: Scenario, choice: LawChoice) -> CertifiedConvergence
     )
 
 
-def _method(scenario: Scenario, seed: int | None) -> DifferentialEvolution:
-    evaluations = max(scenario.tune.evaluations, 10)
+def _method(scenario: Scenario, seed: int | None, evaluations: int | None = None) -> DifferentialEvolution:
+    evaluations = max(evaluations or scenario.tune.evaluations, 10)
     population = min(100, max(evaluations // 10, 5))
     return DifferentialEvolution(
         evaluations=evaluations,
@@ -206,6 +209,7 @@ def front_record(scenario: Scenario, front: Front) -> Record:
         ],
         "notes": [
             "No controller whatever lies below the certified bound.",
+            "A law's points come from a seeded global search: upper bounds on its least peak.",
             *_uncertified(scenario, list(front.runs)),
         ],
     }  # fmt: skip

@@ -74,15 +74,18 @@ def test_hostile_names_are_set_and_do_nothing(record: Record, tmp_path: Path) ->
     log = compiled(tmp_path)
     assert "/etc/passwd" not in re.findall(r"\((/[^\s()]+)", log)
     plain = subprocess.run(
-        [need("pdftotext"), "kit.pdf", "-"], cwd=tmp_path, check=True, capture_output=True
+        [need("pdftotext"), "-raw", "kit.pdf", "-"], cwd=tmp_path, check=True, capture_output=True
     ).stdout
     shown = "".join(plain.decode().split())
     for words in (
         "\\input{/etc/passwd}\\write18{id}\\end{document}",
         "100%of$x_i$",
         "<script>alert(1)</script>",
+        "x" * 500,
+        "longwords" * 50,
     ):
         assert words in shown
+    assert shown.count("x") > len(HOSTILE["long"])  # whole, in the list of names
 
 
 def test_escaped_text_holds_no_command_of_the_users() -> None:

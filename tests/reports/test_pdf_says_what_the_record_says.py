@@ -15,7 +15,7 @@ from intermit.reports.content.budget import thin
 from intermit.reports.content.chapters import chapters
 from intermit.reports.content.drawn import drawings, pdf_figures
 from intermit.reports.content.heading import heading
-from intermit.reports.content.printable import printable
+from intermit.reports.content.printable import directed, east_asian_font, printable
 from intermit.reports.numbers import write
 from intermit.reports.pdf import pdf_document
 from intermit.reports.values import thaw
@@ -114,9 +114,32 @@ def test_hostile_names_are_set_as_text(record: Record) -> None:
     assert "‹RLO›" in text
 
 
-def test_ten_thousand_characters_fit(record: Record) -> None:
+def test_ten_thousand_characters_stand_whole_once_and_short_elsewhere(record: Record) -> None:
     names = (*["quiet"] * 50, HOSTILE["long"], *["quiet"] * 50, HOSTILE["words"])
-    assert squeezed("".join(pages(pdf_of(respoken(record, *names))))).count("x" * 1000) > 0
+    text = pages(pdf_of(respoken(record, *names)))
+    start = next(i for i, page in enumerate(text) if "Names in full" in page and i > 0)
+    listed = squeezed("".join(text[start:]))
+    assert listed.count("x") == len(HOSTILE["long"])
+    assert squeezed("".join(text)).count("longwords") >= 900
+    assert "[name1]" in squeezed("".join(text[:start]))
+
+
+def test_right_to_left_words_are_set_with_their_own_letters(record: Record) -> None:
+    shown = "".join(pages(pdf_of(respoken(record, "لوح שמש"))))
+    assert set("שמש") <= set(shown)
+    assert "U+" not in shown
+
+
+def test_a_text_is_ordered_by_its_own_first_letter() -> None:
+    assert directed("plain (J1)") == "plain (J1)"
+    assert directed("שמש (J1)") == "\u2068שמש (J1)\u2069"
+
+
+def test_an_east_asian_font_is_used_where_it_is_installed() -> None:
+    if east_asian_font() is None:
+        assert printable("漢") == "‹U+6F22›"
+    else:
+        assert printable("漢") == "漢"
 
 
 def test_every_file_of_the_report_repeats() -> None:

@@ -1,8 +1,10 @@
 """Records of one input join into one; two records stand side by side with what changed first."""
 
+import io
 from pathlib import Path
 
 import numpy as np
+import pypdf
 import pytest
 from hostile_text import HOSTILE
 from intermit.reports import Record, RecordError, read_record, write_record
@@ -89,6 +91,16 @@ def test_what_changed_comes_first(record: Record) -> None:
     assert "+period = 9.0" in page
     assert record.sha256 in page
     assert other.sha256 in page
+
+
+def test_the_comparison_comes_on_paper_too(record: Record) -> None:
+    files = comparison_files(record, revised(record))
+    assert files["report.pdf"].startswith(b"%PDF")
+    text = "".join(page.extract_text() for page in pypdf.PdfReader(io.BytesIO(files["report.pdf"])).pages)
+    for words in ("1 with another verdict", "period = 9.0", record.sha256, "Margin in B"):
+        assert "".join(words.split()) in "".join(text.split()), words
+    assert {"paper/kit.tex", "paper/tables/verdicts.tex", "paper/figures/torque-1.pdf"} <= files.keys()
+    assert comparison_files(record, revised(record)) == files
 
 
 def test_a_record_beside_itself_changes_nothing(record: Record) -> None:
