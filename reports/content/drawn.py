@@ -13,6 +13,7 @@ from typing import Any
 from ..numbers import unit_text
 from .blocks import Axis, Chart, Line
 from .printable import east_asian_font, font_names, printable
+from .ticks import log_ticks
 from .wording import short
 
 LEGEND_LONGEST = 42
@@ -140,6 +141,10 @@ def _scale(axes: Any, chart: Chart) -> None:
     for axis, name in ((chart.x, "x"), (chart.y, "y")):
         if axis.log:
             getattr(axes, f"set_{name}scale")("log")
+    ticks = log_ticks(chart) if chart.y.log else ()
+    if ticks:
+        axes.set_yticks(ticks, [f"{t:g}" for t in ticks])
+        axes.minorticks_off()
     if chart.reach is not None and not chart.y.log:
         axes.set_ylim(chart.reach)
     if not chart.x.log and chart.lines:

@@ -94,8 +94,12 @@ def schedule_chapter(record: Record) -> Chapter | None:
         shaded(record),
     )
     extends = {"periodic": "The table repeats for ever.", "finite": "The table ends; g is zero after it."}
-    told = [q for claim in schedule.get("claims", ()) for q in claim["quantities"]]
-    rows = [(q.get("label") or q["name"], q) for q in (*schedule.get("facts", ()), *told)]
+    rows = [(q.get("label") or q["name"], q) for q in schedule.get("facts", ())]
+    rows += [
+        (f"{claim['title']}: {q.get('label') or q['name']}", q)
+        for claim in schedule.get("claims", ())
+        for q in claim["quantities"]
+    ]
     blocks: list[Block] = [Charts((chart,))]
     if rows:
         blocks.append(Facts(tuple(rows)))

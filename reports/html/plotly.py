@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..content.blocks import Array, Axis, Chart, Line
+from ..content.ticks import log_ticks
 from ..content.wording import short, visible
 from ..numbers import unit_text
 
@@ -40,6 +41,8 @@ def figure(chart: Chart) -> dict[str, Any]:
 
     traces = [t for line in chart.lines for t in _traces(line, place)]
     layout: dict[str, Any] = {"xaxis": _axis(chart.x), "yaxis": _axis(chart.y)}
+    if chart.y.log and (ticks := log_ticks(chart)):
+        layout["yaxis"] |= {"tickvals": list(ticks), "ticktext": [f"{t:g}" for t in ticks]}
     if chart.reach is not None and not chart.y.log:
         layout["yaxis"]["range"] = list(chart.reach)
     return {

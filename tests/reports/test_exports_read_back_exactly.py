@@ -9,8 +9,8 @@ from intermit.reports import Record
 from intermit.reports.exports import export_files
 from intermit.reports.exports.matfile import mat_bytes
 from intermit.reports.exports.series import series_of
+from respoken import respoken
 from scipy.io import loadmat
-from synthetic_record import respoken
 
 
 def test_csv_reads_back_exactly(record: Record) -> None:

@@ -18,7 +18,8 @@ from intermit.reports.content.wording import short, visible
 from intermit.reports.html import html_page
 from intermit.reports.numbers import write
 from intermit.reports.values import thaw
-from synthetic_record import make, respoken
+from respoken import respoken
+from synthetic_record import make
 
 
 class Reader(html.parser.HTMLParser):

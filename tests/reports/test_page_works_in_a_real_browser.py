@@ -10,7 +10,7 @@ from intermit.reports.content.chapters import chapters
 from intermit.reports.content.heading import heading
 from intermit.reports.html import html_page
 from outside_tools import need, need_module
-from synthetic_record import respoken
+from respoken import respoken
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 ARGUMENTS = (

@@ -13,7 +13,7 @@ from intermit.reports.paper.latex import quantity, text, unit
 from intermit.reports.parts import figure_of
 from intermit.reports.parts import quantity as known
 from outside_tools import need
-from synthetic_record import respoken
+from respoken import respoken
 
 
 def kit(record: Record, folder: Path) -> dict[str, bytes]:

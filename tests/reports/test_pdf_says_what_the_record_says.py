@@ -20,7 +20,8 @@ from intermit.reports.numbers import write
 from intermit.reports.pdf import pdf_document
 from intermit.reports.values import thaw
 from outside_tools import need
-from synthetic_record import make, respoken
+from respoken import respoken
+from synthetic_record import make
 
 pypdf = pytest.importorskip("pypdf")
 
@@ -115,12 +116,11 @@ def test_hostile_names_are_set_as_text(record: Record) -> None:
 
 
 def test_ten_thousand_characters_stand_whole_once_and_short_elsewhere(record: Record) -> None:
-    names = (*["quiet"] * 50, HOSTILE["long"], *["quiet"] * 50, HOSTILE["words"])
+    names = (*["quiet"] * 50, HOSTILE["long"])
     text = pages(pdf_of(respoken(record, *names)))
     start = next(i for i, page in enumerate(text) if "Names in full" in page and i > 0)
     listed = squeezed("".join(text[start:]))
     assert listed.count("x") == len(HOSTILE["long"])
-    assert squeezed("".join(text)).count("longwords") >= 900
     assert "[name1]" in squeezed("".join(text[:start]))
 
 

@@ -12,7 +12,8 @@ from intermit.reports.build import comparison_files, rebuild_report, write_compa
 from intermit.reports.content.comparing import comparison_chapters, comparison_sentence
 from intermit.reports.join import join
 from intermit.reports.values import thaw
-from synthetic_record import make, respoken
+from respoken import respoken
+from synthetic_record import make
 
 
 def part(record: Record, *keep: str) -> Record:
