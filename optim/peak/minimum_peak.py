@@ -15,6 +15,7 @@ from .explain import arrives_by_itself, explain
 from .finish import Finish
 from .guess import bend, control_at, first_guess
 from .mesh import Mesh, build_mesh
+from .nlp import NonlinearProgram
 from .options import LocalSolver, MultiStart, Refinement
 from .result import PeakAnswer, Search, Standing, Start
 from .scaling import ScaledProblem, scale
@@ -86,6 +87,8 @@ def minimum_peak(
     scaled = scale(active)
     mesh = coarse_mesh(active, refinement.cells)
     candidates, record = _search(scaled, mesh, fast, search, near)
+    if not candidates and solver is None:
+        candidates, record = _search(scaled, mesh, NonlinearProgram(), search, near)
     if not candidates:
         return replace(
             without_history(
