@@ -2181,18 +2181,32 @@ def check_floquet(data: Node, certificate: Node) -> list[str]:
 
 # --- kind: lower bound of the peak torque -----------------------------------------------------------
 #
-# No torque with |torque(t)| <= p w(t) and p < peak takes the start to the target. Proof: |H|' <= p w
-# for H = J w, so the travel, the integral of |H|, is at most N0 s + Nf (tf - s) + p A(s); and the
-# travel to either quaternion of the target is at least D. The latter by the rotation angle, or by a
-# potential phi of the modified Rodrigues vector x of m^-1 q with |J^-1 (body gradient)| <= rate
-# wherever a path of travel below D can pass: a spherical ellipse {F >= 0, |x| <= outer}.
-# Polynomials live on boxes as integers in units of 2^-PEAK_BITS; every rounding is counted.
+# No torque in p w(t) T with p < peak takes the start to the target; T is the unit ball, the cube or
+# the torques of one-sided thrusters. Proof. H = J w obeys H' = H x J^-1 H + torque. |H|^2 and H'J^-1 H
+# are conserved in free motion, so every row M = a I + b J^-1 >= 0 gives a size sqrt(H'M H/L), L the
+# largest t'M t over T, that changes at most p w; so does the largest of them, the gauge N of
+# K = {H'M_k H <= L_k}. Three arguments follow.
+#   momentum    N(start) - N(end) <= p int w.
+#   path        travel = int N dt <= N0 s + Nf (tf - s) + p A(s) for any instant s, and it must be at
+#               least D: by the rotation angle, or by a potential phi of the modified Rodrigues vector
+#               x of m^-1 q with max over K of |phi'| <= rate wherever a path of travel below D can
+#               pass, a spherical ellipse {F >= 0, |x| <= outer}.
+#   components  (cube, from rest to rest) K is cut down by |H_i| <= beta_i; see `require_components`.
+# Maxima over K go by multipliers: G <= sum l_k M_k gives H'G H <= sum l_k L_k.
+# Polynomials live on boxes as integers in units of 2^-PEAK_BITS; every rounding is counted. Floats
+# only choose multipliers, which are then rounded and checked in integers.
 
 PEAK_BITS = 100
 PEAK_BOXES = 400_000
+PEAK_CELLS = 96
+PEAK_DEGREE = 12
 Solid = list[list[list[int]]]
 """Coefficients [i][j][k], i + j + k <= degree, of a polynomial of t in [-1, 1]^3."""
 Cubic = dict[tuple[int, int, int], Fraction]
+Local = tuple[list[int], int]
+"""Of a polynomial: constant, slopes 1 to 3, squares 1 to 3, products 23, 13, 12; and a bound of the rest."""
+Six = list[float]
+"""Symmetric 3 by 3 matrix: 11, 12, 13, 22, 23, 33."""
 
 
 def root_interval(value: Fraction) -> tuple[Fraction, Fraction]:
@@ -2218,34 +2232,86 @@ def arctangent_below(t: Fraction) -> Fraction:
     return Fraction(math.floor(value * 2**60), 2**60)
 
 
-class PeakWindow:
-    """Exact integrals of w >= 0 on [0, horizon], piece by piece."""
+def quadratic(M: Matrix, x: Vector) -> Fraction:
+    """Return x'M x."""
+    return sum((x[i] * M[i][j] * x[j] for i in range(3) for j in range(3)), Fraction(0))
 
-    def __init__(self, place: Node) -> None:
-        self.knots = place["knots"].vector()
-        shapes = [shape.vector() for shape in place["shapes"].items()]
-        require(
-            len(self.knots) == len(shapes) + 1 and self.knots[0] == 0, "window: knots and shapes disagree"
-        )
-        require(all(a < b for a, b in pairwise(self.knots)), "window: knots must increase")
-        self.first, self.second = [Fraction(0)], [Fraction(0)]
-        self.rises: list[tuple[Vector, Vector]] = []
-        for (a, b), shape in zip(pairwise(self.knots), shapes, strict=True):
-            one = [Fraction(0)] + [c * (b - a) / (i + 1) for i, c in enumerate(shape)]
-            two = [Fraction(0)] + [c * (b - a) / (i + 1) for i, c in enumerate(one)]
-            self.rises.append((one, two))
-            self.second.append(self.second[-1] + self.first[-1] * (b - a) + sum(two))
-            self.first.append(self.first[-1] + sum(one))
+
+def combination(weights: Sequence[Fraction], matrices: Sequence[Matrix]) -> Matrix:
+    """Sum of 3 by 3 matrices with weights."""
+    pairs = list(zip(weights, matrices, strict=True))
+    return [[sum((l * M[i][j] for l, M in pairs), Fraction(0)) for j in range(3)] for i in range(3)]
+
+
+def axis_matrix(i: int) -> Matrix:
+    """Return e_i e_i'."""
+    return [[Fraction(int(j == k == i)) for k in range(3)] for j in range(3)]
+
+
+class PeakWindow:
+    """Exact integrals of w >= 0 on [0, horizon], piece by piece: up = int w, int up and int up^2."""
+
+    def __init__(self, knots: Vector, shapes: list[Vector]) -> None:
+        self.knots, self.shapes = knots, shapes
+        self.first, self.second, self.squares = [Fraction(0)], [Fraction(0)], [Fraction(0)]
+        self.rises: list[tuple[Vector, Vector, Vector]] = []
+        for (a, b), shape in zip(pairwise(knots), shapes, strict=True):
+            one = [self.first[-1]] + [c * (b - a) / (i + 1) for i, c in enumerate(shape)]
+            two = [self.second[-1]] + [c * (b - a) / (i + 1) for i, c in enumerate(one)]
+            three = [self.squares[-1]] + [c * (b - a) for c in _primitive(_times(one, one))[1:]]
+            self.rises.append((one, two, three))
+            self.first.append(sum(one, Fraction(0)))
+            self.second.append(sum(two, Fraction(0)))
+            self.squares.append(sum(three, Fraction(0)))
+
+    @classmethod
+    def read(cls, place: Node) -> PeakWindow:
+        """Read and check the profile."""
+        knots, shapes = place["knots"].vector(), [shape.vector() for shape in place["shapes"].items()]
+        fits = len(knots) == len(shapes) + 1 >= 2 and knots[0] == 0
+        require(fits, "window: knots and shapes disagree")
+        require(all(a < b for a, b in pairwise(knots)), "window: knots must increase")
+        for shape in shapes:
+            sure = from_powers(shape or [Fraction(0)]).is_nonnegative(20)
+            require(sure, "window: the profile is not proved >= 0")
+        return cls(knots, shapes)
+
+    def mirrored(self) -> PeakWindow:
+        """Return the profile with time running backwards."""
+        horizon, one = self.knots[-1], Fraction(1)
+        shapes = [_compose(shape, one, -one) for shape in reversed(self.shapes)]
+        return PeakWindow([horizon - k for k in reversed(self.knots)], shapes)
+
+    def _at(self, t: Fraction, order: int) -> Fraction:
+        require(0 <= t <= self.knots[-1], "the instant must lie within the transfer")
+        i = min(bisect_right(self.knots, t), len(self.rises)) - 1
+        x = (t - self.knots[i]) / (self.knots[i + 1] - self.knots[i])
+        value = Fraction(0)
+        for c in reversed(self.rises[i][order]):
+            value = value * x + c
+        return value
 
     def area(self, s: Fraction) -> Fraction:
         """int_0^s up + int_s^tf (total - up)."""
-        horizon = self.knots[-1]
-        require(0 <= s <= horizon, "the instant must lie within the transfer")
-        i = max(k for k in range(len(self.rises)) if self.knots[k] <= s)
-        x = (s - self.knots[i]) / (self.knots[i + 1] - self.knots[i])
-        inner = self.second[i] + self.first[i] * (s - self.knots[i])
-        inner += sum((c * x**k for k, c in enumerate(self.rises[i][1])), Fraction(0))
-        return inner + self.first[-1] * (horizon - s) - (self.second[-1] - inner)
+        inner = self._at(s, 1)
+        return inner + self.first[-1] * (self.knots[-1] - s) - (self.second[-1] - inner)
+
+    def cells(self, until: Fraction) -> Iterator[tuple[Fraction, Fraction]]:
+        """Cut [0, until]: on each cell int up, and a bound of (int_0^t up^2)/up, both rounded up."""
+        inside = {k for k in self.knots if 0 < k < until}
+        edges = sorted({until * k / PEAK_CELLS for k in range(PEAK_CELLS + 1)} | inside)
+        for a, b in pairwise(edges):
+            up, ratio = self._at(a, 0), self._at(b, 1)  # up rises: int up^2 <= up int up
+            if up > 0:
+                ratio = min(ratio, self._at(b, 2) / up)
+            area = self._at(b, 1) - self._at(a, 1)
+            if area > 0:
+                yield rounded_up(area), rounded_up(ratio)
+
+
+def rounded_up(x: Fraction) -> Fraction:
+    """Round up to a multiple of 2^-80."""
+    return Fraction(math.ceil(x * 2**80), 2**80)
 
 
 def quaternion_times(a: Vector, b: Vector) -> Vector:
@@ -2349,7 +2415,7 @@ def largest_near(p: Cubic, centre: Vector, radius: Fraction) -> Fraction:
     return value + sum((abs(c) * radius ** sum(e) for e, c in local.items()), Fraction(0))
 
 
-def rate_polynomials(phi: Cubic, J: Matrix, t: Fraction) -> list[Cubic]:
+def rate_polynomials(phi: Cubic, inverse: Matrix, t: Fraction) -> list[Cubic]:
     """1/4 J^-1 [(1 - |x|^2) g - 2 x cross g + 2 (x.g) x] for g = grad phi, in scaled coordinates x / t."""
     g: list[Cubic] = []
     x: list[Cubic] = []
@@ -2370,7 +2436,6 @@ def rate_polynomials(phi: Cubic, J: Matrix, t: Fraction) -> list[Cubic]:
         straight = cubic_sum(cubic_scale(g[i], 1 / t), cubic_scale(cubic_times(square, g[i]), -t))
         bent = cubic_scale(cubic_times(x[i], dot), 2 * t)
         body.append(cubic_sum(straight, cubic_scale(swirl, Fraction(-2)), bent))
-    inverse = inverse_matrix(J)
     return [cubic_sum(*(cubic_scale(body[j], inverse[i][j] / 4) for j in range(3))) for i in range(3)]
 
 
@@ -2386,11 +2451,19 @@ def as_solid(p: Cubic, degree: int) -> Solid:
     ]
 
 
+def rounding_units(degree: int) -> int:
+    """Bound, in units and absolute sum, of what one cut or the first rounding adds to a polynomial's error.
+
+    A rounded coefficient of t^k is then moved by a half: its error is multiplied by at most 2^k.
+    """
+    return (degree + 1) * (degree + 2) * (degree + 3) // 6 << degree
+
+
 def cut_solid(p: Solid) -> tuple[Solid, Solid]:
     """Both halves along the last coordinate, as polynomials of (last, first, middle).
 
-    Halving rounds every coefficient down by less than one unit; moving by one half adds only.
-    The absolute sum of an error does not grow, so each cut adds at most one unit a coefficient.
+    t = +-1/2 + t'/2: every coefficient is halved, rounded down, and moved by additions only. The
+    absolute sum of an error there was does not grow; `rounding_units` bounds what is added.
     """
     size = len(p)
     low: Solid = [[[0] * (size - i - j) for j in range(size - i)] for i in range(size)]
@@ -2414,53 +2487,341 @@ def solid_sum(p: Solid) -> int:
     return sum(abs(c) for plane in p for line in plane for c in line) - abs(p[0][0][0])
 
 
-def square_above(v: list[Solid], error: int) -> int:
-    """Upper bound of |v|^2 over the box, units 2^-2 PEAK_BITS: second-order terms are formed first."""
-    value, lines, twos, pairs, beyond = 0, [0] * 3, [0] * 3, [0] * 3, 0
-    for p in v:
-        c = p[0][0][0]
-        d = (p[1][0][0], p[0][1][0], p[0][0][1])
-        q = (p[2][0][0], p[0][2][0], p[0][0][2])
-        m = (p[0][1][1], p[1][0][1], p[1][1][0])
-        turn, bend = sum(map(abs, d)), sum(map(abs, q)) + sum(map(abs, m))
-        tail = solid_sum(p) - turn - bend + error
-        value += c * c
-        for a in range(3):
-            lines[a] += 2 * c * d[a]
-            twos[a] += 2 * c * q[a] + d[a] * d[a]
-            pairs[a] += 2 * (c * m[a] + d[(a + 1) % 3] * d[(a + 2) % 3])
+def local(p: Solid, error: int) -> Local:
+    """Coefficients up to second order, and a bound of everything else with the error."""
+    c = [p[0][0][0], p[1][0][0], p[0][1][0], p[0][0][1], p[2][0][0], p[0][2][0], p[0][0][2]]
+    c += [p[0][1][1], p[1][0][1], p[1][1][0]]
+    return c, solid_sum(p) - sum(map(abs, c[1:])) + error
+
+
+def square_above(v: list[Local], side: Local, limit: int) -> int:
+    """Upper bound of |v|^2 where the polynomial `side` is >= 0 on the box, units 2^-2 PEAK_BITS.
+
+    Second-order terms of the square are formed before absolute values are taken. If that is above
+    the limit, a multiple of `side` is added so that slopes outwards of the region cancel.
+    """
+    total, beyond = [0] * 10, 0
+    for (c, d1, d2, d3, q1, q2, q3, m1, m2, m3), tail in v:
+        turn = abs(d1) + abs(d2) + abs(d3)
+        bend = abs(q1) + abs(q2) + abs(q3) + abs(m1) + abs(m2) + abs(m3)
+        two = 2 * c
+        total[0] += c * c
+        total[1] += two * d1
+        total[2] += two * d2
+        total[3] += two * d3
+        total[4] += two * q1 + d1 * d1
+        total[5] += two * q2 + d2 * d2
+        total[6] += two * q3 + d3 * d3
+        total[7] += two * m1 + 2 * d2 * d3
+        total[8] += two * m2 + 2 * d1 * d3
+        total[9] += two * m3 + 2 * d1 * d2
         beyond += 2 * (abs(c) + turn + bend) * tail + tail * tail + 2 * turn * bend + bend * bend
-    known = sum(map(abs, lines)) + sum(max(x, 0) for x in twos) + sum(map(abs, pairs))
-    return value + known + beyond
+    least = _largest_quadratic(total) + beyond
+    slopes, rest = side
+    steep = sum(x * x for x in slopes[1:4])
+    if least > limit and steep:
+        lean = -(slopes[1] * total[1] + slopes[2] * total[2] + slopes[3] * total[3])
+        tries = [lean // steep, *(-total[a] // slopes[a] for a in (1, 2, 3) if slopes[a])]
+        for factor in tries:
+            if factor > 0:
+                moved = [x + factor * y for x, y in zip(total, slopes, strict=True)]
+                least = min(least, _largest_quadratic(moved) + beyond + factor * rest)
+    return least
 
 
-def require_rate(v: list[Cubic], region: list[Cubic], rate: Fraction) -> int:
-    """Prove |v| <= rate on the region within [-1, 1]^3, by cutting boxes; return how many were needed."""
-    degree = max(2, *(sum(e) for p in v for e in p))
-    limit = math.floor(rate * rate * 2 ** (2 * PEAK_BITS))
-    first = [as_solid(p, degree) for p in v]
-    sides = [as_solid(p, 4) for p in region]
-    unit = (degree + 1) * (degree + 2) * (degree + 3) // 6
-    stack = [(first, sides, 0)]
-    count = 0
-    while stack:
-        v_box, g_box, depth = stack.pop()
-        count += 1
-        require(count <= PEAK_BOXES and depth < 80, "the rate of the potential is not proved")
-        error = unit * (depth + 1)
-        if any(p[0][0][0] + solid_sum(p) + 35 * (depth + 1) < 0 for p in g_box):
-            continue
-        if square_above(v_box, error) <= limit:
-            continue
-        cut = [cut_solid(p) for p in v_box]
-        cut_sides = [cut_solid(p) for p in g_box]
-        for half in (0, 1):
-            stack.append(([c[half] for c in cut], [c[half] for c in cut_sides], depth + 1))
-    return count
+def _largest_quadratic(c: list[int]) -> int:
+    """Upper bound on [-1, 1]^3 of the quadratic with these coefficients, in the order of `Local`."""
+    squares = max(c[4], 0) + max(c[5], 0) + max(c[6], 0)
+    slopes, products = abs(c[1]) + abs(c[2]) + abs(c[3]), abs(c[7]) + abs(c[8]) + abs(c[9])
+    return c[0] + slopes + squares + products
 
 
-def travel_by_angle(q: Vector, arc: Fraction, least: Fraction) -> Fraction:
-    """Travel from the rotation angle alone: 2 Jmin times the arc left outside the tolerance."""
+class Gauge:
+    """K = {H'M_k H <= L_k}: a set of momenta, and the gauge N that grows by at most p w."""
+
+    def __init__(self, J: Matrix, torques: list[Vector] | None, rows: list[Vector]) -> None:
+        self.J, self.inverse = J, inverse_matrix(J)
+        unit = combination([Fraction(1)] * 3, [axis_matrix(i) for i in range(3)])
+        self.rows = [combination(pair, [unit, self.inverse]) for pair in rows]
+        require(bool(rows), "the set of momenta has no rows")
+        for M in self.rows:
+            require(is_positive_semidefinite(M), "a row of the set of momenta is not positive semidefinite")
+        if torques is None:
+            require(all(b == 0 for _, b in rows), "the unit ball of torques has rows with b = 0 only")
+            self.levels = [a for a, _ in rows]
+        else:
+            self.levels = [max(quadratic(M, t) for t in torques) for M in self.rows]
+        require(all(level > 0 for level in self.levels), "a row of the set of momenta bounds no torque")
+        self.box: Vector | None = None
+
+    def with_box(self, box: Vector) -> Gauge:
+        """Return the part with |H_i| <= box[i]."""
+        require(all(b > 0 for b in box), "the half widths of a box must be positive")
+        part = Gauge.__new__(Gauge)
+        part.J, part.inverse, part.box = self.J, self.inverse, box
+        part.rows = self.rows + [axis_matrix(i) for i in range(3)]
+        part.levels = self.levels + [b * b for b in box]
+        return part
+
+    def size(self, H: Vector) -> tuple[Fraction, Fraction]:
+        """Enclose the gauge of a momentum."""
+        if not any(H):
+            return Fraction(0), Fraction(0)
+        pairs = [root_interval(quadratic(M, H) / L) for M, L in zip(self.rows, self.levels, strict=True)]
+        return max(low for low, _ in pairs), max(high for _, high in pairs)
+
+    def require_rates_within(self, rate: Fraction, size: Fraction) -> None:
+        """Prove that the gauge of J w is at most `size` for every |w| <= rate."""
+        require(rate >= 0 and size >= 0, "rates and sizes must not be negative")
+        unit = combination([Fraction(1)] * 3, [axis_matrix(i) for i in range(3)])
+        columns = [list(column) for column in zip(*self.J, strict=True)]
+        for M, L in zip(self.rows, self.levels, strict=True):
+            moved = [
+                [sum((x * y for x, y in zip(row, c, strict=True)), Fraction(0)) for c in columns] for row in M
+            ]
+            form = [
+                [sum((self.J[i][k] * moved[k][j] for k in range(3)), Fraction(0)) for j in range(3)]
+                for i in range(3)
+            ]
+            gap = combination([size**2 * L, -(rate**2)], [unit, form])
+            require(is_positive_semidefinite(gap), "the size of the terminal rate is not proved")
+
+    def largest(self, G: Matrix, weights: Vector) -> Fraction:
+        """Upper bound of H'G H over K, by multipliers of the rows."""
+        require(all(l >= 0 for l in weights), "multipliers must not be negative")
+        gap = combination([*weights, Fraction(-1)], [*self.rows, G])
+        require(is_positive_semidefinite(gap), "multipliers do not dominate their form")
+        return sum((l * L for l, L in zip(weights, self.levels, strict=True)), Fraction(0))
+
+    def speed(self, weights: Vector) -> Fraction:
+        """Upper bound of |J^-1 H| over K."""
+        A = self.inverse
+        square = [
+            [sum((A[i][k] * A[k][j] for k in range(3)), Fraction(0)) for j in range(3)] for i in range(3)
+        ]
+        return root_interval(self.largest(square, weights))[1]
+
+
+class Metrics:
+    """Ellipsoids around K: matrices F, in units of 2^-shift, with max over K of v.H <= |F v| for every v.
+
+    That holds if F Q F' >= (sum of l_k) I for Q = sum l_k M_k/L_k, whatever the l_k >= 0: on K,
+    (v.H)^2 <= (v'Q^-1 v)(H'Q H). Floats choose l; Q is rounded down, F Q F' is decided in integers.
+    """
+
+    def __init__(self, gauge: Gauge) -> None:
+        rows = [[[x / L for x in row] for row in M] for M, L in zip(gauge.rows, gauge.levels, strict=True)]
+        largest = max(M[i][i] for M in rows for i in range(3))
+        self._fine = 64 - _magnitude(largest)
+        scale = Fraction(2) ** self._fine
+        self._exact = [
+            [[math.floor(M[i][j] * scale) - 4 * (i == j) for j in range(3)] for i in range(3)] for M in rows
+        ]
+        self._rows = [
+            (float(M[0][0]), float(M[0][1]), float(M[0][2]), float(M[1][1]), float(M[1][2]), float(M[2][2]))
+            for M in rows
+        ]
+        self.shift = 40 + _magnitude(largest) // 2
+        self.even = [1.0 / len(rows)] * len(rows)
+        self.fixed = len(rows) == 1
+        self._known: dict[tuple[int, int, int], tuple[list[float], list[list[int]] | None]] = {}
+
+    def about(self, v: list[float]) -> tuple[list[float], list[list[int]] | None]:
+        """Multipliers and F that are good for v near this direction; remembered."""
+        size = sum(map(abs, v)) or 1.0
+        place = (round(24 * v[0] / size), round(24 * v[1] / size), round(24 * v[2] / size))
+        if place not in self._known:
+            a, b, c = (x / 24 for x in place)
+            spread = [a * a + 1e-4, a * b, a * c, b * b + 1e-4, b * c, c * c + 1e-4]
+            weights = self.improved(spread, self.even, 200)
+            self._known[place] = weights, self.factor(weights)
+        return self._known[place]
+
+    def improved(self, spread: Six, weights: list[float], sweeps: int) -> list[float]:
+        """Multipliers that nearly minimise the mean of |F v|^2, by its multiplicative iteration."""
+        c0, c1, c2, c3, c4, c5 = spread
+        for _ in range(sweeps):
+            q0, q1, q2, q3, q4, q5 = self._sum(weights)
+            i0, i1, i2 = q3 * q5 - q4 * q4, q2 * q4 - q1 * q5, q1 * q4 - q2 * q3
+            i3, i4, i5 = q0 * q5 - q2 * q2, q1 * q2 - q0 * q4, q0 * q3 - q1 * q1
+            a0, a1, a2 = i0 * c0 + i1 * c1 + i2 * c2, i0 * c1 + i1 * c3 + i2 * c4, i0 * c2 + i1 * c4 + i2 * c5
+            b0, b1, b2 = i1 * c0 + i3 * c1 + i4 * c2, i1 * c1 + i3 * c3 + i4 * c4, i1 * c2 + i3 * c4 + i4 * c5
+            d0, d1, d2 = i2 * c0 + i4 * c1 + i5 * c2, i2 * c1 + i4 * c3 + i5 * c4, i2 * c2 + i4 * c4 + i5 * c5
+            s0, s1, s2 = a0 * i0 + a1 * i1 + a2 * i2, a0 * i1 + a1 * i3 + a2 * i4, a0 * i2 + a1 * i4 + a2 * i5
+            s3, s4, s5 = b0 * i1 + b1 * i3 + b2 * i4, b0 * i2 + b1 * i4 + b2 * i5, d0 * i2 + d1 * i4 + d2 * i5
+            loads = [
+                m0 * s0 + m3 * s3 + m5 * s5 + 2 * (m1 * s1 + m2 * s2 + m4 * s4)
+                for m0, m1, m2, m3, m4, m5 in self._rows
+            ]
+            moved = [l * math.sqrt(x) if x > 0 else 0.0 for l, x in zip(weights, loads, strict=True)]
+            total = sum(moved)
+            if not 0 < total < math.inf:
+                break
+            weights = [l / total + 1e-7 for l in moved]
+        return weights
+
+    def _sum(self, weights: list[float]) -> Six:
+        return [sum(l * m[k] for l, m in zip(weights, self._rows, strict=True)) for k in range(6)]
+
+    def factor(self, weights: list[float]) -> list[list[int]] | None:
+        """F for the multipliers, proved; None if it does not come out."""
+        total = sum(weights) * (1 + 1e-9)
+        q0, q1, q2, q3, q4, q5 = (x / total for x in self._sum(weights))
+        try:
+            g0 = math.sqrt(q0)
+            g1, g2 = q1 / g0, q2 / g0
+            g3 = math.sqrt(q3 - g1 * g1)
+            g4 = (q4 - g1 * g2) / g3
+            g5 = math.sqrt(q5 - g2 * g2 - g4 * g4)
+            f0, f3, f5 = 1 / g0, 1 / g3, 1 / g5
+            f1, f4 = -g1 * f0 * f3, -g4 * f3 * f5
+            f2 = -(g2 * f0 + g4 * f1) * f5
+            scale = 2.0**self.shift
+            F = [
+                [round(f0 * scale), 0, 0],
+                [round(f1 * scale), round(f3 * scale), 0],
+                [round(f2 * scale), round(f4 * scale), round(f5 * scale)],
+            ]
+            lots = [round(l * 2**50) for l in weights]
+        except (ArithmeticError, ValueError):
+            return None
+        Q = [
+            [sum(map(mul, lots, column)) for column in zip(*lines, strict=True)]
+            for lines in zip(*self._exact, strict=True)
+        ]
+        FQ = [[sum(map(mul, row, column)) for column in zip(*Q, strict=True)] for row in F]
+        G = [[sum(map(mul, row, other)) for other in F] for row in FQ]
+        least = sum(lots) * Fraction(2) ** (self._fine + 2 * self.shift)
+        for i in range(3):
+            G[i][i] -= math.ceil(least)
+        first = G[0][0] * G[1][1] - G[0][1] * G[1][0]
+        det = (
+            G[2][2] * first
+            - G[1][2] * (G[0][0] * G[2][1] - G[0][1] * G[2][0])
+            + G[0][2] * (G[1][0] * G[2][1] - G[1][1] * G[2][0])
+        )
+        return F if G[0][0] > 0 and first > 0 and det > 0 else None
+
+    def apply(self, F: list[list[int]], v: list[Local]) -> list[Local]:
+        """Return F v, rounding included in the bound of the rest."""
+        (p, q, r), tails = [c for c, _ in v], [tail for _, tail in v]
+        shift, result = self.shift, []
+        for a, b, c in F:
+            values = [(a * x + b * y + c * z) >> shift for x, y, z in zip(p, q, r, strict=True)]
+            rest = (abs(a) * tails[0] + abs(b) * tails[1] + abs(c) * tails[2]) >> shift
+            result.append((values, rest + 11))
+        return result
+
+
+def _magnitude(x: Fraction) -> int:
+    """Exponent e with x near 2^e."""
+    return x.numerator.bit_length() - x.denominator.bit_length()
+
+
+def components_above(v: list[Solid], box: list[int], error: int) -> int:
+    """Upper bound of sum box_i |v_i| over the cube: sharp where no component changes its sign."""
+    signs, flips = [], 0
+    for p, width in zip(v, box, strict=True):
+        reach = solid_sum(p) - abs(p[0][0][0]) + error
+        flips += 2 * max(reach, 0) * width
+        signs.append(width if p[0][0][0] >= 0 else -width)
+    a, b, c = signs
+    p, q, r = v
+    total = 0
+    for lines in zip(p, q, r, strict=True):
+        for rows in zip(*lines, strict=True):
+            total += sum(abs(a * x + b * y + c * z) for x, y, z in zip(*rows, strict=True))
+    middle = a * p[0][0][0] + b * q[0][0][0] + c * r[0][0][0]
+    return total - abs(middle) + middle + flips + error * sum(box)
+
+
+@dataclass
+class RateBox:
+    """One box of the search: the rate and the region on it, its depth, its error and an ellipsoid to try."""
+
+    v: list[Solid]
+    region: list[Solid]
+    depth: int
+    error: int
+    weights: list[float]
+    F: list[list[int]] | None
+
+
+class RateProof:
+    """Proof that v.H <= rate for every H in K wherever the region polynomials are >= 0, by cutting boxes."""
+
+    def __init__(self, gauge: Gauge, rate: Fraction) -> None:
+        self.metrics = Metrics(gauge)
+        self.limit = math.floor(rate * rate * 2 ** (2 * PEAK_BITS))
+        self.linear = math.floor(rate * 2 ** (PEAK_BITS + 30))
+        self.box = None if gauge.box is None else [math.ceil(b * 2**30) for b in gauge.box]
+        self.crumb = math.floor(rate * 2 ** (PEAK_BITS - 17))
+        self.count = 0
+
+    def run(self, v: list[Cubic], region: list[Cubic]) -> int:
+        """Prove it; return how many boxes were needed."""
+        degree = max(2, *(sum(e) for p in v for e in p))
+        sides = [as_solid(p, max(2, *(sum(e) for e in p))) for p in region]
+        first = [as_solid(p, degree) for p in v]
+        stack = [RateBox(first, sides, 0, rounding_units(degree), self.metrics.even, None)]
+        while stack:
+            box = stack.pop()
+            self.count += 1
+            require(self.count <= PEAK_BOXES and box.depth < 80, "the rate of the potential is not proved")
+            slack = [rounding_units(len(p) - 1) * (box.depth + 1) for p in box.region]
+            if any(p[0][0][0] + solid_sum(p) + e < 0 for p, e in zip(box.region, slack, strict=True)):
+                continue
+            if not self._holds(box, local(box.region[0], slack[0])):
+                stack += self._halves(box)
+        return self.count
+
+    def _holds(self, box: RateBox, side: Local) -> bool:
+        """Whether the rate is proved on a box: by an ellipsoid (the parent's, a known, its own) or else."""
+        v, metrics, limit = [local(p, box.error) for p in box.v], self.metrics, self.limit
+        if box.F is not None:
+            value = square_above(metrics.apply(box.F, v), side, limit)
+            if value <= limit:
+                return True
+            if metrics.fixed or value > 4 * limit:
+                return False
+        unit = 2.0**-PEAK_BITS
+        columns = [[float(c[k]) * unit for c, _ in v] for k in range(4)]
+        box.weights, box.F = metrics.about(columns[0])
+        if self._fits(box.F, v, side):
+            return True
+        spread = [
+            sum(x[i] * x[j] for x in columns) for i, j in ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
+        ]
+        sweeps = 5 if box.depth < 20 else 40 if box.depth < 32 else 300
+        box.weights = metrics.improved(spread, box.weights, sweeps)
+        box.F = metrics.factor(box.weights)
+        if self._fits(box.F, v, side):
+            return True
+        if self.box is None:
+            return False
+        return components_above(box.v, self.box, box.error) <= self.linear
+
+    def _fits(self, F: list[list[int]] | None, v: list[Local], side: Local) -> bool:
+        return F is not None and square_above(self.metrics.apply(F, v), side, self.limit) <= self.limit
+
+    def _halves(self, box: RateBox) -> list[RateBox]:
+        """Cut a box in two; terms of high order that no longer matter join the error."""
+        v, error = box.v, box.error
+        while len(v[0]) > 5:
+            top = max(sum(abs(c) for plane in p for line in plane for c in line[-1:]) for p in v)
+            if top > self.crumb:
+                break
+            v, error = [[[line[:-1] for line in plane[:-1]] for plane in p[:-1]] for p in v], error + top
+        error += rounding_units(len(v[0]) - 1)
+        cut, sides = [cut_solid(p) for p in v], [cut_solid(p) for p in box.region]
+        return [
+            RateBox([c[i] for c in cut], [c[i] for c in sides], box.depth + 1, error, box.weights, box.F)
+            for i in (0, 1)
+        ]
+
+
+def travel_by_angle(q: Vector, arc: Fraction, speed: Fraction) -> Fraction:
+    """Travel from the angle alone: twice the arc left outside the tolerance, over the fastest rate."""
     low, high = length_interval(q)
     vector = length_interval(q[1:])
     pi = Fraction(3141592653589793238, 10**18)
@@ -2471,7 +2832,7 @@ def travel_by_angle(q: Vector, arc: Fraction, least: Fraction) -> Fraction:
             reached = pi / 2 - 2 * _arctangent_above((1 - t) / (1 + t))
     else:
         reached = pi - 2 * _arctangent_above(vector[1] / (low - q[0]))
-    return 2 * least * (reached - arc)
+    return 2 * (reached - arc) / speed
 
 
 def _arctangent_above(t: Fraction) -> Fraction:
@@ -2512,81 +2873,218 @@ class PeakTarget:
         return reach
 
 
+def read_potential(place: Node) -> Cubic:
+    """Read a polynomial of three variables: rows of three exponents and a coefficient."""
+    phi: Cubic = {}
+    for entry in place.items():
+        i, j, k, c = entry.vector(4)
+        sound = all(x.denominator == 1 and x >= 0 for x in (i, j, k)) and i + j + k <= PEAK_DEGREE
+        require(sound, f"exponents must be integers of sum at most {PEAK_DEGREE}")
+        exponent = (int(i), int(j), int(k))
+        require(exponent not in phi and any(exponent), "a term of the potential is constant or given twice")
+        phi[exponent] = c
+    require(bool(phi), "the potential has no terms")
+    return phi
+
+
 def require_separation(
-    place: Node, J: Matrix, q: Vector, target: PeakTarget, least: Fraction, travel: Fraction
+    place: Node, gauge: Gauge, speed: Fraction, q: Vector, target: PeakTarget, travel: Fraction
 ) -> str:
     """Prove that every motion from q to the quaternion +1 travels at least `travel`."""
     if place["by"].text() == "angle":
-        require(
-            travel_by_angle(q, target.arc, least) >= travel, "the rotation angle does not give the travel"
-        )
+        enough = travel_by_angle(q, target.arc, speed) >= travel
+        require(enough, "the rotation angle does not give the travel")
         return "by the rotation angle"
     require(place["by"].text() == "potential", "a separation is by angle or by potential")
-    chart = PeakChart(place["chart"])
-    phi: Cubic = {}
-    for entry in place["potential"].items():
-        i, j, k, c = entry.vector(4)
-        require(all(x.denominator == 1 and 0 <= x <= 12 for x in (i, j, k)), "exponents must be integers")
-        phi[(int(i), int(j), int(k))] = c
+    chart, phi = PeakChart(place["chart"]), read_potential(place["potential"])
     rate = place["rate"].number()
     require(rate > 0, "the rate must be positive")
     start, error = chart.locate(q)
     end = [-c for c in chart.middle]
     slack = chart.arc_to_model(start, 1) + 4 * error + chart.arc_to_model(end, -1) + target.arc
-    require(
-        2 * least * (4 * arctangent_below(chart.outer) - slack) >= travel,
-        "a path of that travel may leave the region",
-    )
+    reach = 2 * (4 * arctangent_below(chart.outer) - slack) / speed
+    require(reach >= travel, "a path of that travel may leave the region")
     t = chart.outer
     high = largest_near(phi, [c / t for c in end], target.radius(end) / t)
     low = -largest_near(cubic_scale(phi, Fraction(-1)), [c / t for c in start], 2 * error / t)
     require(low - high >= travel * rate, "the potential does not differ enough between start and target")
-    boxes_used = require_rate(rate_polynomials(phi, J, t), chart.region(), rate)
-    return f"by a potential of degree {max(sum(e) for e in phi)}, proved on {boxes_used} boxes"
+    count = RateProof(gauge, rate).run(rate_polynomials(phi, gauge.inverse, t), chart.region())
+    return f"by a potential of degree {max(sum(e) for e in phi)}, proved on {count} boxes"
+
+
+@dataclass(frozen=True)
+class Transfer:
+    """What a bound of the peak speaks about."""
+
+    J: Matrix
+    window: PeakWindow
+    attitude: Vector
+    rate: Vector
+    tolerance: Fraction
+    end_rate: Fraction
+    signs: Vector
+    torques: list[Vector] | None
+    words: str
+    unit: str
+
+    @classmethod
+    def read(cls, data: Node) -> Transfer:
+        """Read and check the transfer of the data."""
+        J, place = read_inertia(data), data["transfer"]
+        torques, words, unit = read_torques(place["torque"])
+        q, w, signs = (
+            place["attitude"].vector(4),
+            place["rate"].vector(3),
+            place["signs"].vector(),
+        )
+        require(any(q), "the start attitude must not be zero")
+        require(signs in ([1], [-1], [1, -1], [-1, 1]), "target signs are +1, -1 or both")
+        tolerance, end_rate = (place["tolerance"][name].number() for name in ("attitude", "rate"))
+        require(0 <= tolerance < 1, "the terminal tolerance must lie in [0, 1)")
+        require(end_rate >= 0, "the terminal rate tolerance must not be negative")
+        window = PeakWindow.read(place["window"])
+        return cls(J, window, q, w, tolerance, end_rate, signs, torques, words, unit)
+
+    @property
+    def momentum(self) -> Vector:
+        """J w at the start."""
+        return [sum((x * y for x, y in zip(row, self.rate, strict=True)), Fraction(0)) for row in self.J]
+
+    def describe(self) -> list[str]:
+        """Return the transfer for people."""
+        ends = " or ".join(f"{int(x):+d}" for x in self.signs)
+        return [
+            f"inertia J = {show_matrix(self.J)} kg m^2,",
+            f"transfer time {show(self.window.knots[-1])} s, integral of the window profile "
+            f"{show(self.window.first[-1])} s,",
+            f"start quaternion along ({', '.join(show(c) for c in self.attitude)}),",
+            f"start rate ({', '.join(show(c) for c in self.rate)}) rad/s, target quaternion {ends},",
+            f"terminal tolerance |bv| <= {show(self.tolerance)}, |w| <= {show(self.end_rate)} rad/s;",
+        ]
+
+
+def read_torques(place: Node) -> tuple[list[Vector] | None, str, str]:
+    """Return points whose convex hull holds the torques of unit peak (None: the ball), words and unit."""
+    by = place["by"].text()
+    if by == "euclidean":
+        return None, "|torque(t)| <= p w(t)", "N m"
+    signs = [Fraction(1), Fraction(-1)]
+    if by == "component":
+        cube = [[a, b, c] for a in signs for b in signs for c in signs]
+        return cube, "every |torque_i(t)| <= p w(t)", "N m"
+    require(by == "thrusters", "torque is limited by euclidean, component or thrusters")
+    axes = place["axes"].matrix(None, 3)
+    require(0 < len(axes) <= 12, "expected 1 to 12 thrusters")
+    sums: list[Vector] = [[Fraction(0)] * 3]
+    for axis in axes:
+        sums += [[x + y for x, y in zip(point, axis, strict=True)] for point in sums]
+    return sums, f"torque = B f, 0 <= f_j <= p w(t), columns of B {show_matrix(axes)} m,", "N"
 
 
 @kind("peak-lower-bound")
 def check_peak_lower_bound(data: Node, certificate: Node) -> list[str]:
-    """Prove that no torque of a smaller Euclidean peak makes the transfer."""
-    J = read_inertia(data)
-    transfer, claim, witness = data["transfer"], certificate["claim"], certificate["witness"]
-    window = PeakWindow(transfer["window"])
-    q, w = transfer["attitude"].vector(4), transfer["rate"].vector(3)
-    require(any(q), "the start attitude must not be zero")
-    tolerance, end_rate = transfer["tolerance"]["attitude"].number(), transfer["tolerance"]["rate"].number()
-    require(end_rate >= 0, "the terminal rate tolerance must not be negative")
-    least, greatest = witness["inertia_above"].number(), witness["inertia_below"].number()
-    require(least > 0, "the lower bound of the inertia must be positive")
-    for side, bound in ((1, least), (-1, greatest)):
-        gap = [[side * (J[i][j] - (bound if i == j else 0)) for j in range(3)] for i in range(3)]
-        require(is_positive_semidefinite(gap), "the principal inertias are not within the bounds given")
-    H0 = [sum((row[k] * w[k] for k in range(3)), Fraction(0)) for row in J]
-    start, end = (length_interval(H0)[1] if any(w) else Fraction(0)), greatest * end_rate
-    travel, s, peak = witness["travel"].number(), witness["instant"].number(), claim["peak"].number()
-    area = window.area(s)
-    require(peak > 0 and area > 0, "the peak must be positive and the window must open")
-    horizon = window.knots[-1]
-    require(
-        start * s + end * (horizon - s) + peak * area <= travel, "a transfer of that peak may travel enough"
-    )
-    target = PeakTarget.of(tolerance)
-    signs = transfer["signs"].vector()
-    require(bool(signs) and all(x in (1, -1) for x in signs), "target signs are +1 or -1")
-    found = witness["separations"].items()
-    require(len(found) == len(signs), "one separation for each target sign")
-    words = []
-    for sign, place in zip(signs, found, strict=True):
-        words.append(require_separation(place, J, [sign * c for c in q], target, least, travel))
-    opened, ends = show(window.first[-1]), " or ".join(f"{int(x):+d}" for x in signs)
+    """Prove that no torque of a smaller peak makes the transfer."""
+    d, witness, peak = Transfer.read(data), certificate["witness"], certificate["claim"]["peak"].number()
+    require(peak > 0 and d.window.first[-1] > 0, "the peak must be positive and the window must open")
+    gauge = Gauge(d.J, d.torques, [row.vector(2) for row in witness["rows"].items()])
+    arguments = {"momentum": require_momentum, "path": require_path, "components": require_components}
+    name = witness["argument"].text()
+    require(name in arguments, "the argument is momentum, path or components")
     return [
-        f"no torque with |torque(t)| <= p w(t) and p < {show(peak)} N m takes the start to the target:",
-        f"inertia J = {show_matrix(J)} kg m^2,",
-        f"transfer time {show(horizon)} s, integral of the window profile {opened} s,",
-        f"start quaternion along ({', '.join(show(c) for c in q)}),",
-        f"start rate ({', '.join(show(c) for c in w)}) rad/s, target quaternion {ends},",
-        f"terminal tolerance |bv| <= {show(tolerance)}, |w| <= {show(end_rate)} rad/s;",
-        f"travel at least {show(travel)} N m s^2: " + "; ".join(words),
+        f"no torque with {d.words} and p < {show(peak)} {d.unit} takes the start to the target:",
+        *d.describe(),
+        arguments[name](d, gauge, peak, witness),
     ]
+
+
+def require_momentum(d: Transfer, gauge: Gauge, peak: Fraction, witness: Node) -> str:
+    """N must fall from the start to the end by what windows and peak allow."""
+    end = witness["end"].number()
+    gauge.require_rates_within(d.end_rate, end)
+    start = gauge.size(d.momentum)[0]
+    require(start - end >= peak * d.window.first[-1], "a torque of that peak may absorb the momentum")
+    return "the momentum cannot be absorbed by less"
+
+
+def require_path(d: Transfer, gauge: Gauge, peak: Fraction, witness: Node) -> str:
+    """Windows and peak allow less travel than the way takes."""
+    travel, s, end = (witness[name].number() for name in ("travel", "instant", "end"))
+    gauge.require_rates_within(d.end_rate, end)
+    start, horizon = gauge.size(d.momentum)[1], d.window.knots[-1]
+    allowed = start * s + end * (horizon - s) + peak * d.window.area(s)
+    require(allowed <= travel, "a transfer of that peak may travel enough")
+    return require_travel(d, gauge, gauge.speed(witness["speed"].vector()), travel, witness)
+
+
+def require_travel(d: Transfer, gauge: Gauge, speed: Fraction, travel: Fraction, witness: Node) -> str:
+    """Prove the travel to every quaternion of the target."""
+    require(travel > 0 and speed > 0, "travel and speed must be positive")
+    target, found = PeakTarget.of(d.tolerance), witness["separations"].items()
+    require(len(found) == len(d.signs), "one separation for each target sign")
+    words = []
+    for sign, place in zip(d.signs, found, strict=True):
+        q = [sign * c for c in d.attitude]
+        words.append(require_separation(place, gauge, speed, q, target, travel))
+    return f"travel at least {show(travel)} s in the gauge of {len(gauge.rows)} rows: " + "; ".join(words)
+
+
+def require_components(d: Transfer, gauge: Gauge, peak: Fraction, witness: Node) -> str:
+    """Travel of a cube of torques from rest to rest, each component of the momentum bounded by itself.
+
+    Until the instant s let n = up, Y = int_0^t up^2; after it the same with time running backwards.
+    K gives H in p n K, hence |H_i| <= r_i p n. Let B_i >= r_i, or 1 + kappa_i trial Y/up < B_i, where
+    |(X x J^-1 X)_i| <= kappa_i for X in K, |X_j| <= B_j, |X_i| >= 1. For p <= trial then
+    |H_i| <= p up + kappa_i p^2 Y: as long as every |H_j| <= B_j p n, |H_i| grows at most
+    p w + kappa_i (p n)^2 wherever |H_i| >= p n; so |H_j| < B_j p n goes on, and it holds at first,
+    because Y/up -> 0 where the windows first open. So at every instant H is in p n f times the part of
+    K with |H_i| <= beta_i, f = max(1, max_i min(1 + kappa_i p Y/up, r_i)/beta_i).
+    """
+    require(d.words.startswith("every |torque_i(t)|"), "components are for the cube of torques")
+    require(not any(d.rate) and d.end_rate == 0, "components are from rest to exact rest")
+    travel, s, trial = (witness[name].number() for name in ("travel", "instant", "trial"))
+    require(peak <= trial, "the peak is above the trial")
+    r = [
+        root_interval(gauge.largest(axis_matrix(i), row.vector()))[1]
+        for i, row in enumerate(witness["widths"].items())
+    ]
+    B, box = witness["bounds"].vector(3), witness["box"].vector(3)
+    require(len(r) == 3 and all(b >= 1 for b in B), "expected three widths, and bounds of at least 1")
+    kappa = gyroscopic_bounds(gauge, B, witness["multipliers"])
+    horizon = d.window.knots[-1]
+    require(0 <= s <= horizon, "the instant must lie within the transfer")
+    cells = [*d.window.cells(s), *d.window.mirrored().cells(horizon - s)]
+    largest = max(ratio for _, ratio in cells)
+    for width, bound, k in zip(r, B, kappa, strict=True):
+        sure = bound >= width or 1 + k * trial * largest < bound
+        require(sure, "a bound of a component is not proved")
+    allowed = Fraction(0)
+    for area, ratio in cells:
+        grown = [min(1 + k * peak * ratio, x) / b for k, x, b in zip(kappa, r, box, strict=True)]
+        allowed += peak * area * max(Fraction(1), *grown)
+    require(allowed <= travel, "a transfer of that peak may travel enough")
+    speed = gauge.speed(witness["speed"].vector())
+    return require_travel(d, gauge.with_box(box), speed, travel, witness)
+
+
+def gyroscopic_bounds(gauge: Gauge, B: Vector, place: Node) -> Vector:
+    """kappa_i >= |(X x J^-1 X)_i| over X in K, |X_j| <= B_j, |X_i| >= 1: multipliers of both signs."""
+    part, A = gauge.with_box(B), gauge.inverse
+    lists = place.items()
+    require(len(lists) == 6, "expected multipliers for three axes and two signs")
+    kappa = [Fraction(0)] * 3
+    for number, entry in enumerate(lists):
+        i, sign = number // 2, 1 - 2 * (number % 2)
+        j, k = (i + 1) % 3, (i + 2) % 3
+        G = [[Fraction(0)] * 3 for _ in range(3)]
+        for m in range(3):
+            for row, column, value in ((j, m, A[k][m]), (k, m, -A[j][m])):
+                G[row][column] += sign * value / 2
+                G[column][row] += sign * value / 2
+        *weights, floor = entry.vector()
+        require(floor >= 0, "multipliers must not be negative")
+        lifted = combination([Fraction(1), floor], [G, axis_matrix(i)])
+        kappa[i] = max(kappa[i], part.largest(lifted, weights) - floor)
+    return kappa
 
 
 # --- command line ------------------------------------------------------------------------------

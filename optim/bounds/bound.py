@@ -6,12 +6,13 @@ smaller p takes the start to the target. Several bounds are valid at once; the l
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import final
 
 from ..norms import Euclidean, LargestComponent
 from ..problem import TransferProblem
+from .argument import Argument, ComponentsArgument, MomentumArgument, PathArgument
 from .cache import remembered
 from .components import Sides, Widths, component_bounds, peak_from_components
 from .gauge import GaugeSet, invariant_set, longest_vertex
@@ -35,10 +36,13 @@ class NamedBound:
         Which argument it comes from.
     exact : Fraction
         The bound; `value` is it rounded down.
+    argument : Argument
+        Its proof, for a certificate.
     """
 
     name: str
     exact: Fraction
+    argument: Argument = field(repr=False)
 
     @property
     def value(self) -> float:
@@ -89,7 +93,7 @@ def certified_lower_bound(problem: TransferProblem, *, options: PathOptions | No
     bounds = _euclidean(problem, options)
     if not isinstance(problem.norm, Euclidean):
         longest = longest_vertex(problem.norm)
-        bounds = [NamedBound(f"Euclidean {b.name}", b.exact / longest) for b in bounds]
+        bounds = [replace(b, name=f"Euclidean {b.name}", exact=b.exact / longest) for b in bounds]
         bounds += _by_invariant_set(problem, options)
     ordered = tuple(sorted(bounds, key=lambda bound: -bound.exact))
     return LowerBound(ordered[0], ordered, problem.norm.unit)
@@ -127,11 +131,11 @@ def _by_components(
         return []
     beta: Widths = (near[0], near[1], near[2])
     path = path_of(problem, momenta.with_box(beta), options)
-    peaks = [
-        peak_from_components(sides, component_bounds(momenta, sides, trial), beta, path.travel)
-        for trial in (Fraction(float(known) * factor) for factor in TRIALS)
-    ]
-    return [NamedBound("components", max(peaks))]
+    trials = (Fraction(float(known) * factor) for factor in TRIALS)
+    found = [component_bounds(momenta, sides, trial) for trial in trials]
+    peaks = [peak_from_components(sides, bounds, beta, path.travel) for bounds in found]
+    peak, bounds = max(zip(peaks, found, strict=True), key=lambda pair: pair[0])
+    return [NamedBound("components", peak, ComponentsArgument(momenta, path, beta, bounds, sides.instant))]
 
 
 def _momentum_and_path(
@@ -144,7 +148,10 @@ def _momentum_and_path(
     absorbed = momentum_peak(windows, momenta.size_below(H0), end)
     path = path_of(problem, momenta, options)
     peak = least_peak(windows, path.travel, momenta.size_above(H0), end)
-    return [NamedBound(names[0], absorbed), NamedBound(names[1], peak.value)]
+    return [
+        NamedBound(names[0], absorbed, MomentumArgument(momenta)),
+        NamedBound(names[1], peak.value, PathArgument(momenta, path)),
+    ]
 
 
 def start_momentum(problem: TransferProblem) -> tuple[Fraction, Fraction, Fraction]:

@@ -1,8 +1,9 @@
-"""The certificate of a Euclidean lower bound: everything a stranger needs to prove it again.
+"""The certificate of a lower bound: everything a stranger needs to prove it again.
 
-The witness holds the travel, the instant at which it is split, bounds of the principal inertias
-and, for each target sign, the chart and the potential with its rate. The stand-alone checker
-repeats the branch and bound in integers; it shares no code with this package.
+The data are the transfer; the claim is the peak. The witness names the argument (momentum, path or
+components), the rows of the set of momenta and whatever turns the proof into algebra: multipliers,
+the instant at which the transfer is split, and for each target sign the chart and the potential
+with its rate. The stand-alone checker repeats the branch and bound; it shares no code with this package.
 """
 
 from __future__ import annotations
@@ -11,52 +12,54 @@ from fractions import Fraction
 from typing import Any
 
 from ...verify.certificates import Certificate
-from ..norms import Euclidean
+from ..norms import Euclidean, LargestComponent, Norm, ThrusterAxes
 from ..problem import TransferProblem
-from .momentum_sets import UnitBall, greatest_inertia_above, least_inertia_below
-from .path import PathOptions
+from .argument import Argument, ComponentsArgument, MomentumArgument, PathArgument
+from .bound import NamedBound, start_momentum
+from .chart import square_root
+from .gauge import GaugeSet, torque_vertices
+from .momentum_sets import MomentumSet, greatest_inertia_above, least_inertia_below
+from .path import PathBound
 from .separation import Separation
-from .travel import WindowTravel, least_peak
+from .travel import WindowTravel, least_peak, rounded_down
 
 KIND = "peak-lower-bound"
+_FINE = 2**120
+_LESS = 1 - Fraction(1, 2**64)
+"""The checker rounds its square roots: a travel is claimed a trifle smaller."""
 
 
-def peak_certificate(problem: TransferProblem, *, options: PathOptions | None = None) -> Certificate | None:
-    """Certificate of the shortest-path bound of a Euclidean problem; None if that bound is 0.
+def peak_certificate(problem: TransferProblem, bound: NamedBound) -> Certificate | None:
+    """Certificate of one of a problem's lower bounds; None if it claims nothing.
 
-    Raises
-    ------
-    TypeError
-        If the norm is not Euclidean: the bounds of other norms have no certificate yet.
+    The peak claimed is the bound's value, or one float less.
     """
-    from .bound import path_of, start_momentum
-
-    if not isinstance(problem.norm, Euclidean):
-        raise TypeError(f"there is no certificate for the {problem.norm.name} norm yet")
-    ball = UnitBall(problem.body)
-    path = path_of(problem, ball, options or PathOptions())
-    travel = Fraction((path.travel * 2**60).__floor__(), 2**60)
-    start = ball.size_above(start_momentum(problem))
-    end = ball.size_of_rate(problem.terminal.rate)
-    found = least_peak(WindowTravel(problem.window), travel, start, end)
-    peak = Fraction((found.value * 2**60).__floor__(), 2**60)
-    if peak <= 0:
-        return None
-    separations = dict(path.separations)
-    witness = {
-        "travel": travel,
-        "instant": found.instant,
-        "inertia_above": least_inertia_below(problem.body),
-        "inertia_below": greatest_inertia_above(problem.body),
-        "separations": [_separation(separations[sign]) for sign in problem.signs],
-    }
-    return Certificate(KIND, _data(problem), {"peak": peak}, witness)
+    argument = bound.argument
+    scale = _scale(problem, argument)
+    witness: dict[str, Any] = {"rows": _rows(argument.momenta, problem)}
+    if isinstance(argument, MomentumArgument):
+        end = _up(argument.momenta.size_of_rate(problem.terminal.rate) / scale[0])
+        witness |= {"argument": "momentum", "end": end}
+        exact = _absorbed(problem, argument, scale, end)
+    else:
+        travel = _down(argument.path.travel / scale[1] * _LESS)
+        witness |= {"travel": travel, "speed": _speed_multipliers(argument.momenta, problem)}
+        witness["separations"] = _separations(problem, argument.path, scale[1])
+        if isinstance(argument, PathArgument):
+            exact = _allowing(problem, argument, scale, travel, witness)
+        else:
+            exact = bound.exact * _LESS
+            witness |= _component_witness(argument)
+    peak = Fraction(rounded_down(min(exact, bound.exact)))
+    return Certificate(KIND, transfer_data(problem), {"peak": peak}, witness) if peak > 0 else None
 
 
-def _data(problem: TransferProblem) -> dict[str, Any]:
+def transfer_data(problem: TransferProblem) -> dict[str, Any]:
+    """What a lower bound speaks about, as certificates say it."""
     return {
         "inertia": problem.body.exact_inertia,
         "transfer": {
+            "torque": _torque(problem.norm),
             "window": {"knots": problem.window.knots, "shapes": problem.window.shapes},
             "attitude": problem.attitude,
             "rate": problem.rate,
@@ -66,7 +69,90 @@ def _data(problem: TransferProblem) -> dict[str, Any]:
     }
 
 
-def _separation(proof: Separation | None) -> dict[str, Any]:
+def _torque(norm: Norm) -> dict[str, Any]:
+    if isinstance(norm, Euclidean):
+        return {"by": "euclidean"}
+    if isinstance(norm, LargestComponent):
+        return {"by": "component"}
+    if isinstance(norm, ThrusterAxes):
+        return {"by": "thrusters", "axes": norm.axes}
+    raise TypeError(f"there is no certificate for the {norm.name} norm")
+
+
+def _scale(problem: TransferProblem, argument: Argument) -> tuple[Fraction, Fraction]:
+    """Radius of the ball of momenta that holds the torques, enclosed; 1 where the set holds them itself."""
+    if isinstance(argument.momenta, GaugeSet) or isinstance(problem.norm, Euclidean):
+        return Fraction(1), Fraction(1)
+    square = max(sum((x * x for x in t), Fraction(0)) for t in torque_vertices(problem.norm))
+    return square_root(square)
+
+
+def _rows(momenta: MomentumSet, problem: TransferProblem) -> list[tuple[Fraction, Fraction]]:
+    """Pairs (a, b) of the rows a I + b J^-1."""
+    rows = [(Fraction(1), Fraction(0))]
+    if isinstance(momenta, GaugeSet) and len(momenta.matrices) > 1:
+        rows.append((-1 / greatest_inertia_above(problem.body), Fraction(1)))
+        rows.append((1 / least_inertia_below(problem.body), Fraction(-1)))
+    return rows
+
+
+def _speed_multipliers(momenta: MomentumSet, problem: TransferProblem) -> list[Fraction]:
+    """Multipliers l with J^-2 <= sum l_k M_k, of the two known ways the one with the smaller bound."""
+    low, high = 1 / greatest_inertia_above(problem.body), 1 / least_inertia_below(problem.body)
+    count = len(_rows(momenta, problem))
+    ball = [high**2, *[Fraction(0)] * (count - 1)]
+    if not isinstance(momenta, GaugeSet) or count == 1:
+        return ball
+    both = [low**2, low + high, Fraction(0)]
+    values = [
+        sum((x * g for x, g in zip(way, momenta.levels, strict=False)), Fraction(0)) for way in (ball, both)
+    ]
+    return ball if values[0] <= values[1] else both
+
+
+def _absorbed(
+    problem: TransferProblem, argument: MomentumArgument, scale: tuple[Fraction, Fraction], end: Fraction
+) -> Fraction:
+    """Peak that the momentum argument gives with a size of the end rounded up."""
+    total = WindowTravel(problem.window).total
+    start = argument.momenta.size_below(start_momentum(problem)) / scale[1]
+    return (start - end) / total if total else Fraction(0)
+
+
+def _allowing(
+    problem: TransferProblem,
+    argument: PathArgument,
+    scale: tuple[Fraction, Fraction],
+    travel: Fraction,
+    witness: dict[str, Any],
+) -> Fraction:
+    """Peak that the path argument gives with a travel rounded down; enters instant and end in the witness."""
+    start = _up(argument.momenta.size_above(start_momentum(problem)) / scale[0])
+    end = _up(argument.momenta.size_of_rate(problem.terminal.rate) / scale[0])
+    found = least_peak(WindowTravel(problem.window), travel, start, end)
+    witness |= {"argument": "path", "instant": found.instant, "end": end}
+    return found.value
+
+
+def _component_witness(argument: ComponentsArgument) -> dict[str, Any]:
+    bounds = argument.bounds
+    return {
+        "argument": "components",
+        "instant": argument.instant,
+        "trial": bounds.trial,
+        "box": argument.box,
+        "bounds": bounds.B,
+        "widths": bounds.width_multipliers,
+        "multipliers": bounds.multipliers,
+    }
+
+
+def _separations(problem: TransferProblem, path: PathBound, scale: Fraction) -> list[dict[str, Any]]:
+    found = dict(path.separations)
+    return [_separation(found[sign], scale) for sign in problem.signs]
+
+
+def _separation(proof: Separation | None, scale: Fraction) -> dict[str, Any]:
     if proof is None:
         return {"by": "angle"}
     chart = proof.chart
@@ -79,5 +165,13 @@ def _separation(proof: Separation | None) -> dict[str, Any]:
             "outer": chart.outer,
         },
         "potential": [[*e, c] for e, c in proof.potential.items()],
-        "rate": Fraction(proof.supremum.value),
+        "rate": Fraction(proof.supremum.value) * scale,
     }
+
+
+def _down(x: Fraction) -> Fraction:
+    return Fraction((x * _FINE).__floor__(), _FINE)
+
+
+def _up(x: Fraction) -> Fraction:
+    return Fraction((x * _FINE).__ceil__(), _FINE)

@@ -28,12 +28,14 @@ import numpy as np
 from ...models.rigid_body import RigidBody, leading_minors
 from ...models.schedule import PiecewisePolynomial
 from ...models.schedule import polynomial as univariate
+from .chart import square_root
 from .gauge import GaugeSet
 from .rate import ExactMatrix, exact_inverse
 from .travel import WindowTravel
 
 CELLS = 96
 _DENOMINATOR = 2**40
+_MARGIN = Fraction(1, 10**7)
 
 
 @final
@@ -123,31 +125,58 @@ def _coarser(x: Fraction) -> Fraction:
 @final
 @dataclass(frozen=True)
 class ComponentBounds:
-    """Valid at every peak up to the trial: gyroscopic constants, and |H_i| <= B_i p n."""
+    """Valid at every peak up to the trial: gyroscopic constants, and |H_i| <= B_i p n.
+
+    Attributes
+    ----------
+    trial : Fraction
+        Largest peak.
+    kappa, B, widths : three Fraction
+        kappa_i of the part |X_j| <= B_j; either B_i = r_i, the width, or 1 + kappa_i trial Y/up < B_i.
+    multipliers : six tuples of Fraction
+        For each axis and sign those that prove kappa_i: rows of the set, of the box, and the floor's.
+    width_multipliers : three tuples of Fraction
+        Those that prove r_i.
+    """
 
     trial: Fraction
     kappa: Widths
     B: Widths
     widths: Widths
+    multipliers: tuple[tuple[Fraction, ...], ...]
+    width_multipliers: tuple[tuple[Fraction, ...], ...]
 
 
 def component_bounds(momenta: GaugeSet, sides: Sides, trial: Fraction, *, rounds: int = 5) -> ComponentBounds:
-    """Iterate kappa and B from the widths of the invariant set."""
-    r = momenta.widths()
-    widths: Widths = (Fraction(float(r[0])), Fraction(float(r[1])), Fraction(float(r[2])))
-    B, kappa = widths, (Fraction(0), Fraction(0), Fraction(0))
+    """Iterate kappa and B from the widths of the invariant set.
+
+    B is kept while it confirms itself, 1 + kappa(B) trial Y/up < B: that alone makes it valid, for
+    |H_i| <= B_i p n holds where the windows first open and cannot cease.
+    """
+    proved = [momenta_width(momenta, axis) for axis in range(3)]
+    widths: Widths = (proved[0][0], proved[1][0], proved[2][0])
+    B, best = widths, None
     for _ in range(rounds):
-        kappa = (
-            gyroscopic_bound(momenta, B, 0),
-            gyroscopic_bound(momenta, B, 1),
-            gyroscopic_bound(momenta, B, 2),
-        )
-        raised = [_coarser(1 + k * trial * sides.largest_ratio) for k in kappa]
-        following: Widths = (min(B[0], raised[0]), min(B[1], raised[1]), min(B[2], raised[2]))
+        found = [gyroscopic_bound(momenta, B, axis) for axis in range(3)]
+        kappa: Widths = (found[0][0], found[1][0], found[2][0])
+        raised = [1 + k * trial * sides.largest_ratio for k in kappa]
+        if not all(b >= r or x < b for b, r, x in zip(B, widths, raised, strict=True)):
+            break
+        multipliers = tuple(m for _, both in found for m in both)
+        best = ComponentBounds(trial, kappa, B, widths, multipliers, tuple(m for _, m in proved))
+        lower = [_coarser(x * (1 + _MARGIN)) for x in raised]
+        following: Widths = (min(B[0], lower[0]), min(B[1], lower[1]), min(B[2], lower[2]))
         if all(b - f < Fraction(1, 1000) for b, f in zip(B, following, strict=True)):
             break
         B = following
-    return ComponentBounds(trial, kappa, B, widths)
+    assert best is not None  # the widths confirm themselves
+    return best
+
+
+def momenta_width(momenta: GaugeSet, axis: int) -> tuple[Fraction, tuple[Fraction, ...]]:
+    """Upper bound of |X_axis| over the set, and the multipliers that prove it."""
+    square, multipliers = _dual_bound(_unit(axis), list(momenta.matrices), list(momenta.levels), None)
+    return square_root(square)[1], multipliers
 
 
 def gyroscopic_form(body: RigidBody, axis: int) -> ExactMatrix:
@@ -162,53 +191,52 @@ def gyroscopic_form(body: RigidBody, axis: int) -> ExactMatrix:
     return tuple((row[0], row[1], row[2]) for row in G)
 
 
-def gyroscopic_bound(momenta: GaugeSet, B: Widths, axis: int) -> Fraction:
-    """Upper bound of |X'G X| over X in the set, |X_j| <= B_j, |X_axis| >= 1: multipliers, checked exactly."""
+def gyroscopic_bound(
+    momenta: GaugeSet, B: Widths, axis: int
+) -> tuple[Fraction, tuple[tuple[Fraction, ...], tuple[Fraction, ...]]]:
+    """Upper bound of |X'G X| over X in the set, |X_j| <= B_j, |X_axis| >= 1; multipliers of both signs."""
     G = gyroscopic_form(momenta.body, axis)
-    if not any(any(row) for row in G):
-        return Fraction(0)
     units = [_unit(j) for j in range(3)]
     matrices = [*momenta.matrices, *units]
     levels = [*momenta.levels, *(b * b for b in B)]
-    best = Fraction(0)
+    none = (Fraction(0),) * (len(matrices) + 1)
+    if not any(any(row) for row in G):
+        return Fraction(0), (none, none)
+    both = []
     for sign in (1, -1):
-        signed = tuple(tuple(sign * x for x in row) for row in G)
-        best = max(best, _dual_bound(signed, matrices, levels, units[axis]))
-    return _coarser(best)
+        x, y, z = ((sign * row[0], sign * row[1], sign * row[2]) for row in G)
+        both.append(_dual_bound((x, y, z), matrices, levels, units[axis]))
+    return _coarser(max(both[0][0], both[1][0])), (both[0][1], both[1][1])
 
 
 def _dual_bound(
-    G: tuple[tuple[Fraction, ...], ...],
-    matrices: list[ExactMatrix],
-    levels: list[Fraction],
-    floor: ExactMatrix,
-) -> Fraction:
-    """Sum l_k g_k^2 - rho with sum l_k M_k - rho e e' - G >= 0, proved by minors."""
-    multipliers, rho = _solve_dual(G, matrices, levels, floor)
-    slack = Fraction(max(float(m) for m in multipliers) + 1e-6) / 10**7
+    G: ExactMatrix, matrices: list[ExactMatrix], levels: list[Fraction], floor: ExactMatrix | None
+) -> tuple[Fraction, tuple[Fraction, ...]]:
+    """Sum l_k g_k^2 - rho with sum l_k M_k - rho floor - G >= 0, proved by minors; l (and rho)."""
+    multipliers = _solve_dual(G, matrices, levels, floor)
+    rows = matrices if floor is None else [*matrices, _negated(floor)]
+    values = levels if floor is None else [*levels, Fraction(-1)]
+    slack = Fraction(max(float(m) for m in multipliers) + 1e-6) / 10**9
     for _ in range(40):
         lifted = [multipliers[0] + slack, *multipliers[1:]]
         gap = [
-            [
-                sum(
-                    (m * M[i][j] for m, M in zip(lifted, matrices, strict=True)), -rho * floor[i][j] - G[i][j]
-                )
-                for j in range(3)
-            ]
+            [sum((m * M[i][j] for m, M in zip(lifted, rows, strict=True)), -G[i][j]) for j in range(3)]
             for i in range(3)
         ]
         if all(minor > 0 for minor in leading_minors(gap)):
-            return max(sum((m * g for m, g in zip(lifted, levels, strict=True)), -rho), Fraction(0))
+            bound = sum((m * g for m, g in zip(lifted, values, strict=True)), Fraction(0))
+            return max(bound, Fraction(0)), tuple(lifted)
         slack *= 4
-    raise ArithmeticError("no multipliers prove a bound of the gyroscopic term")
+    raise ArithmeticError("no multipliers prove a bound of the quadratic form")
+
+
+def _negated(M: ExactMatrix) -> ExactMatrix:
+    return tuple((-row[0], -row[1], -row[2]) for row in M)
 
 
 def _solve_dual(
-    G: tuple[tuple[Fraction, ...], ...],
-    matrices: list[ExactMatrix],
-    levels: list[Fraction],
-    floor: ExactMatrix,
-) -> tuple[list[Fraction], Fraction]:
+    G: ExactMatrix, matrices: list[ExactMatrix], levels: list[Fraction], floor: ExactMatrix | None
+) -> list[Fraction]:
     """Multipliers by a small semidefinite program (only guesses: they are checked afterwards)."""
     import clarabel
     from scipy import sparse
@@ -217,19 +245,20 @@ def _solve_dual(
     places = ((0, 0, 1.0), (0, 1, root), (1, 1, 1.0), (0, 2, root), (1, 2, root), (2, 2, 1.0))
     size = max(abs(float(x)) for row in G for x in row)
     columns = [[-float(M[i][j]) * c / size for i, j, c in places] for M in matrices]
-    columns.append([float(floor[i][j]) * c / size for i, j, c in places])
+    values = [float(g) for g in levels]
+    if floor is not None:
+        columns.append([float(floor[i][j]) * c / size for i, j, c in places])
+        values.append(-1.0)
     count = len(columns)
-    top = -np.eye(count)
-    rows = np.vstack([top, np.array(columns).T])
+    rows = np.vstack([-np.eye(count), np.array(columns).T])
     right = np.concatenate([np.zeros(count), [-float(G[i][j]) * c / size for i, j, c in places]])
-    cost = np.array([*(float(g) for g in levels), -1.0])
     settings = clarabel.DefaultSettings()
     settings.verbose = False
     cones = [clarabel.NonnegativeConeT(count), clarabel.PSDTriangleConeT(3)]
     zero = sparse.csc_matrix((count, count))
-    solution = clarabel.DefaultSolver(zero, cost, sparse.csc_matrix(rows), right, cones, settings).solve()
-    x = [Fraction(max(float(value), 0.0)) for value in solution.x]
-    return x[:-1], x[-1]
+    matrix = sparse.csc_matrix(rows)
+    solution = clarabel.DefaultSolver(zero, np.array(values), matrix, right, cones, settings).solve()
+    return [Fraction(max(float(value), 0.0)) for value in solution.x]
 
 
 def _unit(axis: int) -> ExactMatrix:
