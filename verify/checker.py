@@ -2752,10 +2752,10 @@ class RateProof:
 
     def __init__(self, gauge: Gauge, rate: Fraction) -> None:
         self.metrics = Metrics(gauge)
-        self.limit = math.floor(rate * rate * 2 ** (2 * PEAK_BITS))
-        self.linear = math.floor(rate * 2 ** (PEAK_BITS + 30))
+        self.limit: int = math.floor(rate * rate * 2 ** (2 * PEAK_BITS))
+        self.linear: int = math.floor(rate * 2 ** (PEAK_BITS + 30))
         self.box = None if gauge.box is None else [math.ceil(b * 2**30) for b in gauge.box]
-        self.crumb = math.floor(rate * 2 ** (PEAK_BITS - 17))
+        self.crumb: int = math.floor(rate * 2 ** (PEAK_BITS - 17))
         self.count = 0
 
     def run(self, v: list[Cubic], region: list[Cubic]) -> int:
