@@ -30,6 +30,18 @@ def fraction(value: fmpq) -> Fraction:
     return Fraction(int(value.p), int(value.q))
 
 
+def _over_one(values: Sequence[Fraction | float]) -> tuple[list[int], int]:
+    """Exact values as integers over one denominator."""
+    ratios = [value.as_integer_ratio() for value in values]
+    common = lcm(*[denominator for _, denominator in ratios])
+    return [numerator * (common // denominator) for numerator, denominator in ratios], common
+
+
+@cache
+def _binomials(degree: int) -> tuple[int, ...]:
+    return tuple(comb(degree, j) for j in range(degree + 1))
+
+
 @cache
 def _one_plus_x(power: int) -> fmpq_poly:
     return fmpq_poly([1, 1]) ** power
@@ -55,8 +67,26 @@ class Bernstein:
     @classmethod
     def from_controls(cls, controls: Sequence[Fraction | float]) -> Bernstein:
         """Build from plain Bernstein coefficients c_0 .. c_n, floats at their exact value."""
-        n = len(controls) - 1
-        return cls(fmpq_poly([comb(n, j) * rational(c) for j, c in enumerate(controls)]), n)
+        integers, denominator = _over_one(controls)
+        n = len(integers) - 1
+        return cls(fmpq_poly([b * c for b, c in zip(_binomials(n), integers, strict=True)], denominator), n)
+
+    @classmethod
+    def with_derivative(
+        cls, controls: Sequence[Fraction | float], length: Fraction
+    ) -> tuple[Bernstein, Bernstein]:
+        """Return the polynomial of these coefficients, and its derivative in time over a step of `length`."""
+        integers, denominator = _over_one(controls)
+        n = len(integers) - 1
+        value = cls(fmpq_poly([b * c for b, c in zip(_binomials(n), integers, strict=True)], denominator), n)
+        if n == 0:
+            return value, cls(fmpq_poly([]), 0)
+        factor = n * length.denominator
+        slopes = [
+            b * (d - c) * factor
+            for b, c, d in zip(_binomials(n - 1), integers[:-1], integers[1:], strict=True)
+        ]
+        return value, cls(fmpq_poly(slopes, denominator * length.numerator), n - 1)
 
     @classmethod
     def constant(cls, value: Fraction | float) -> Bernstein:
@@ -92,15 +122,6 @@ class Bernstein:
 
     __rmul__ = __mul__
 
-    def derivative(self) -> Bernstein:
-        """Return dp/dx."""
-        n = self.degree
-        if n == 0:
-            return Bernstein(fmpq_poly([]), 0)
-        a = [self.form[j] for j in range(n + 1)]
-        # n (c_{j+1} - c_j) binomial(n-1, j) in scaled coefficients:
-        return Bernstein(fmpq_poly([(j + 1) * a[j + 1] - (n - j) * a[j] for j in range(n)]), n - 1)
-
     def controls(self) -> list[Fraction]:
         """Plain Bernstein coefficients; p lies between the least and the greatest on [0, 1]."""
         n = self.degree
@@ -114,7 +135,7 @@ class Bernstein:
 
     def is_nonnegative(self, depth: int = 4) -> bool:
         """Whether p >= 0 on [0, 1] is proved with at most `depth` halvings; False proves nothing."""
-        if all(c >= 0 for c in self.form.numer().coeffs()):
+        if min(self.form.numer().coeffs(), default=0) >= 0:
             return True
         return _is_nonnegative(self._integers(), depth)
 

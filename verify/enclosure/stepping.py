@@ -23,7 +23,7 @@ from ...models.schedule import Schedule
 from ...models.schedule import polynomial as poly
 from ...models.schedule.piecewise import Piece
 from ...models.schedule.polynomial import Coefficients
-from .bernstein import Bernstein, rational
+from .bernstein import Bernstein
 from .collocation import CHECK_POINTS, Array, propose, rule
 
 Modes = tuple[str, ...]
@@ -266,9 +266,9 @@ class Stepper:
 
 def is_proved(system: ComparisonSystem, step: Step) -> bool:
     """Whether every inequality of the step holds on all of it: exact, rounding nothing."""
-    x = [step.polynomial(name) for name in system.names]
-    per_second = rational(1 / step.length)
-    dx = [p.derivative() * per_second for p in x]
+    length = step.length
+    both = [Bernstein.with_derivative(step.controls[name], length) for name in system.names]
+    x, dx = [value for value, _ in both], [slope for _, slope in both]
     return all(c.is_nonnegative() for c in system.conditions(step.gain_square, x, dx, step.modes))
 
 

@@ -134,9 +134,6 @@ class AdaptiveSystem(LawComparison):
         learns: list[Modes] = [(), ("held",)] if peak > 0 and k < UNLEARNT * self._lam else [()]
         return tuple((keep, top, *held) for keep in keeps for held in learns for top in tops)
 
-    def _f(self, S: float, y: float) -> float:
-        return (2.0 - S) * (y * y + 2.0 * self._a * S)
-
     def _f_top(self, y: float) -> float:
         return 2.0 * self._a * (1.0 + y * y / (4.0 * self._a)) ** 2
 
@@ -149,33 +146,38 @@ class AdaptiveSystem(LawComparison):
         """Floats; each bound pushed outwards by `slack` times its own scale."""
         y, s, k, r, Y, Z, L, U = state
         lam, c, G = self._lam, self.coupling, gain_square
-        S, T = s * s, Z * Z
+        S, T, a2 = s * s, Z * Z, 2.0 * self._a
+        room_low, room_high = 2.0 - S, 2.0 - T
         scale = slack * peak * (L + lam)
-        low_pull, high_pull = 0.5 * G * L * (2.0 - S), 0.5 * G * k * (2.0 - T)
+        low_pull, high_pull = 0.5 * G * L * room_low, 0.5 * G * k * room_high
         drift, spread = c * Y, slack * 0.1 * c * Y
         s_rate = 0.0
         if modes[0] == "kept":
             s_rate = -drift * angle_factor_float(S) - low_pull * s - scale * s - spread
-        f_low = min(self._f(S, y), self._f(T, y))
-        f_high = {
-            "rising": lambda: self._f(T, Y),
-            "falling": lambda: self._f(S, Y),
-            "top": lambda: self._f_top(Y),
-            "split": lambda: self._f_split(s, Y, Z),
-        }[modes[1]]()
+        square, top = y * y, Y * Y
+        f_low = min(room_low * (square + a2 * S), room_high * (square + a2 * T))
+        mode = modes[1]
+        if mode == "split":
+            f_high = room_low * (top + a2 * T)
+        elif mode == "rising":
+            f_high = room_high * (top + a2 * T)
+        elif mode == "falling":
+            f_high = room_low * (top + a2 * S)
+        else:
+            f_high = self._f_top(Y)
         gamma = self._gamma
-        gain_scale = slack * peak * gamma * U * 2.0 * (Y * Y + 2.0 * self._a * T)
+        gain_scale = slack * peak * gamma * U * 2.0 * (top + a2 * T)
         gain_scale += ABOVE_ROUNDING * peak * (L + lam)
         k_rate = gamma * r * G * f_low - gain_scale
         return (
             -low_pull * y - scale * y,
             s_rate,
             0.0 if "held" in modes else k_rate,
-            -lam * r + G * (2.0 - T) - slack * (lam * r + peak),
+            -lam * r + G * room_high - slack * (lam * r + peak),
             -high_pull * Y + scale * Y,
             drift * angle_factor_float(T) - high_pull * Z + scale * Z + spread,
             gamma * U * G * f_high + gain_scale,
-            -lam * U + G * (2.0 - S) + slack * (lam * U + peak),
+            -lam * U + G * room_low + slack * (lam * U + peak),
         )
 
     def conditions(

@@ -38,6 +38,7 @@ from ..enclosure.bernstein import Bernstein
 
 ONE = Bernstein.constant(1)
 TWO = Bernstein.constant(2)
+QUARTER, THIRTY_SECOND = Bernstein.constant(Fraction(1, 4)), Bernstein.constant(Fraction(1, 32))
 ZERO = Bernstein.constant(0)
 BLIND = 1.98
 """Above this S = 1 - b0 (337 deg) the error-angle bound counts as having reached 2 pi."""
@@ -88,7 +89,7 @@ class BodyBounds:
 
 def angle_factor(S: Bernstein) -> Bernstein:
     """A(S) = 1 - S/4 - S^2/32, an upper bound of sqrt(1 - S/2) on 0 <= S <= 2."""
-    return ONE - S * Bernstein.constant(Fraction(1, 4)) - S * S * Bernstein.constant(Fraction(1, 32))
+    return ONE - S * (QUARTER + S * THIRTY_SECOND)
 
 
 def angle_factor_float(S: float) -> float:

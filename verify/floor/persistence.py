@@ -92,8 +92,10 @@ class PersistenceSystem(LawComparison):
         }
 
     def choices(self, state: Sequence[float], peak: float) -> Sequence[Modes]:
-        """Order the bounds of the angle by their value now."""
+        """Order the bounds of the angle by their value now; none where r < 0, which no step size mends."""
         _, _, s, _, z, r = state
+        if r < 0.0:
+            return ()
         angle = "angle" if s * s < BLIND else "blind"
         if peak == 0.0:
             return ((angle, "none"),)
@@ -127,8 +129,11 @@ class PersistenceSystem(LawComparison):
         v_rate = -0.5 * lam * v * (1.0 - slack)
         bend = 1.0 if self.scalable else 1.0 - 0.25 * R0 * K * z * z
         z_rate = -0.5 * lam * z * (1.0 - slack) + c * v * bend + slack * 0.5 * c * v
-        sigma = {"angle": S, "cascade": R0 * z * z / r, "none": 2.0}[modes[1]]
-        r_rate = -lam * r + G * (2.0 - sigma) - slack * (lam * r + (peak if modes[1] != "none" else 0.0))
+        if modes[1] == "none":
+            r_rate = -lam * r + G * (2.0 - 2.0) - slack * (lam * r)
+        else:
+            sigma = S if modes[1] == "angle" else R0 * z * z / r
+            r_rate = -lam * r + G * (2.0 - sigma) - slack * (lam * r + peak)
         return (K_rate, y_rate, s_rate, v_rate, z_rate, r_rate)
 
     def conditions(

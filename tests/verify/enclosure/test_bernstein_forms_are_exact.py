@@ -1,7 +1,7 @@
 """Bernstein forms compute exactly, and a sign or a bound they prove is true."""
 
 from fractions import Fraction as F
-from itertools import product
+from itertools import pairwise, product
 
 import pytest
 from intermit.models.schedule import polynomial as poly
@@ -38,8 +38,17 @@ def test_ring_operations_agree_with_power_form():
         assert value(p - q, x) == a - b
         assert value(p * q, x) == a * b
         assert value(-p, x) == -a
-        assert value(p.derivative(), x) == poly.evaluate(poly.derivative(P), x)
         assert value(p.elevated(6), x) == a
+
+
+def test_slopes_over_a_step_are_exact_for_rationals_and_for_floats_at_their_binary_value():
+    length = F(7, 30)
+    for controls in ([F(1, 3), -2, F(5, 7), 1], [0.1, -3e-200, 1e12, 5e-324], [0.25], [F(1, 9), 0.3]):
+        form, slope = Bernstein.with_derivative(controls, length)
+        exact, n = [F(c) for c in controls], len(controls) - 1
+        assert form.controls() == exact == Bernstein.from_controls(controls).controls()
+        rises = [(b - a) * n / length for a, b in pairwise(exact)]
+        assert slope.controls() == (rises or [0])
 
 
 def test_halves_are_the_polynomial_on_the_halves():
