@@ -8,7 +8,8 @@ step-size control is needed and no knot is crossed. Whether the schedule excites
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import pairwise
 from typing import final
@@ -26,6 +27,10 @@ TERMS = 24
 """Terms of a step's Taylor series; with |M| h <= 1/2 the remainder is below 1e-30."""
 
 
+Table = Sequence[Sequence[Fraction | int | float | str]]
+Rows = tuple[tuple[Fraction, ...], ...]
+
+
 @final
 @dataclass(frozen=True, eq=False)
 class LinearPlant:
@@ -38,12 +43,28 @@ class LinearPlant:
     K : (m, n)
     schedule : Schedule
         Its g is the gain of the input.
+    exact : mapping of "A", "B", "K" to rows of fractions
+        What proofs take; the floats themselves unless `from_rows` was given other numbers.
     """
 
     A: Array
     B: Array
     K: Array
     schedule: Schedule
+    exact: Mapping[str, Rows] = field(default_factory=dict, kw_only=True)
+
+    @classmethod
+    def from_rows(cls, A: Table, B: Table, K: Table, schedule: Schedule) -> LinearPlant:
+        """Build from rows of numbers; strings and fractions stay exact."""
+        exact = {
+            name: tuple(tuple(Fraction(x) for x in row) for row in table)
+            for name, table in (("A", A), ("B", B), ("K", K))
+        }
+        for name, rows in exact.items():
+            if not rows or len({len(row) for row in rows}) != 1:
+                raise ValueError(f"{name} must have rows of one length, received {[len(r) for r in rows]}")
+        floats = (np.array([[float(x) for x in row] for row in rows]) for rows in exact.values())
+        return cls(*floats, schedule, exact=exact)
 
     def __post_init__(self) -> None:
         for name in ("A", "B", "K"):
@@ -56,6 +77,12 @@ class LinearPlant:
             raise ValueError(
                 f"A (n, n), B (n, m) and K (m, n) do not fit: {self.A.shape}, {self.B.shape}, {self.K.shape}"
             )
+        if not self.exact:
+            rows = {
+                name: tuple(tuple(Fraction(x) for x in row) for row in getattr(self, name).tolist())
+                for name in ("A", "B", "K")
+            }
+            object.__setattr__(self, "exact", rows)
 
     def transition(self, start: Fraction, stop: Fraction) -> Array:
         """Matrix (n, n) that takes x(start) to x(stop), start <= stop, s."""

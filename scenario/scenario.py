@@ -7,9 +7,10 @@ from fractions import Fraction
 from pathlib import Path
 from typing import final
 
+from ..models.linear import LinearPlant
 from ..models.rigid_body import ExactMatrix, RigidBody
 from ..models.schedule import Schedule
-from . import initial, laws, schedules, spacecraft
+from . import initial, laws, linear, schedules, spacecraft
 from .document import Document, read_document
 from .errors import ScenarioError, quote
 from .fingerprint import fingerprint
@@ -42,6 +43,7 @@ class Scenario:
     initial : state at t = 0, as an error from the target attitude
     initial_set : set of states over which claims are made
     laws : the laws, not yet built, in the file's order
+    linear : a linear plant through the same windows, or None
     tolerance, simulation, limits, check, optimum, compare, tune, study, report : the tables of those names
     warnings : one line each; nothing in them stops a run
     sha256 : hash of what the scenario says, files it names included
@@ -57,6 +59,7 @@ class Scenario:
     initial: InitialState
     initial_set: InitialSet
     laws: tuple[LawChoice, ...]
+    linear: LinearPlant | None
     tolerance: ToleranceTable
     simulation: SimulationTable
     limits: LimitsTable | None
@@ -138,6 +141,7 @@ def build_scenario(file: ScenarioFile, document: Document) -> Scenario:
         initial=state,
         initial_set=bounds,
         laws=choices,
+        linear=linear.build(file.linear, schedule_choice.schedule, document),
         tolerance=file.tolerance,
         simulation=file.simulation,
         limits=file.limits,

@@ -123,6 +123,14 @@ class LawDefaultsTable(Table):
     a: Positive | None = None
 
 
+class LinearTable(Table):
+    """[linear]: a linear plant x' = (A - g(t) B K) x through the windows; A (n, n), B (n, m), K (m, n)."""
+
+    A: tuple[tuple[Exact, ...], ...]
+    B: tuple[tuple[Exact, ...], ...]
+    K: tuple[tuple[Exact, ...], ...]
+
+
 class ToleranceTable(Table):
     """[tolerance]: settled means |bv| <= `attitude` and |w| <= `rate` (rad/s), Euclidean, for good."""
 
@@ -157,6 +165,7 @@ class ScenarioFile(Table):
     target: AttitudeTable = AttitudeTable(quaternion=(Fraction(1), Fraction(0), Fraction(0), Fraction(0)))
     law: tuple[LawTable, ...] = ()
     law_defaults: LawDefaultsTable = LawDefaultsTable()
+    linear: LinearTable | None = None
     tolerance: ToleranceTable = ToleranceTable()
     simulation: SimulationTable = SimulationTable()
     limits: LimitsTable | None = None

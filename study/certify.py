@@ -18,6 +18,7 @@ from ..verify.certificates.facts import fact_certificate, filter_start_certifica
 from ..verify.certificates.program import NotAlgebraicError
 from ..verify.certificates.schedule import schedule_data
 from ..verify.floor.certificate import question_data
+from ..verify.linear_stability import plant_data
 from ..verify.lyapunov import certificates_of
 from ..verify.lyapunov.forms import inertia_data, law_form
 from ..verify.verdict import Claim, Evidence, EvidenceKind, Verdict
@@ -102,6 +103,8 @@ def differences(text: str, scenario: Scenario) -> tuple[str, ...]:
 def _scenario_data(scenario: Scenario) -> Iterator[Mapping[str, Any]]:
     """Everything certificates may say of a scenario, for each of its laws, as they say it."""
     shared = {"schedule": schedule_data(scenario.schedule)} | windows_data(scenario.schedule)
+    if scenario.linear is not None:
+        shared |= plant_data(scenario.linear)
     if not scenario.laws:
         yield shared
     for choice in scenario.laws:

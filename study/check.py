@@ -8,6 +8,7 @@ from typing import final
 
 from ..scenario import Scenario
 from ..verify.excitation import excitation_claim
+from ..verify.linear_stability import stability_claim
 from ..verify.schedule_facts import schedule_claims
 from ..verify.verdict import Claim
 from .case import Case, CaseOptions
@@ -103,10 +104,11 @@ def run_check(
 
 
 def scenario_claims(scenario: Scenario) -> tuple[Claim, ...]:
-    """Claims about the schedule alone."""
+    """Claims about the schedule, whatever the law; and about the linear plant through it, if one is given."""
     choice = scenario.schedule_choice
     facts = schedule_claims(choice.schedule, overruns_as_printed=choice.overruns_as_printed)
-    return (*facts, excitation_claim(choice.schedule, scenario.check.pe_window))
+    plant = () if scenario.linear is None else (stability_claim(scenario.linear),)
+    return (*facts, excitation_claim(choice.schedule, scenario.check.pe_window), *plant)
 
 
 def _silent(stage: str, fraction: float) -> None:

@@ -94,6 +94,18 @@ CLAIM_KEYS: dict[str, ClaimKey] = {
             counts=True,
         ),
         ClaimKey(
+            "linear.stable",
+            "linear plant stable through the windows",
+            "Every solution of x' = (A - g(t) B K) x tends to zero: all its Floquet multipliers over one "
+            "period of the windows lie inside the unit circle. Claimed where the scenario has [linear].",
+            "The monodromy matrix M enclosed in rationals by Taylor steps; a rational P > 0 with M'PM < P "
+            "proves stability, one with M'PM > P and x'Px > 0 for some x the opposite.",
+            "Floquet's theorem; Stein's inequality",
+            "docs/theory-linear.md",
+            by_law=False,
+            counts=True,
+        ),
+        ClaimKey(
             "filter.start",
             "filter starts in range",
             "0 < R(0) <= 2 max g^2 / lambda. With it R <= 2 max g^2 / lambda for ever; without the second "

@@ -2151,9 +2151,22 @@ def check_floquet(data: Node, certificate: Node) -> list[str]:
     profile = read_profile(data)
     require(profile.period is not None, "Floquet multipliers need a periodic schedule")
     M, radius = monodromy(A, matrix_product(B, K), profile)
-    P = witness["P"].matrix(n, n)
-    require(is_symmetric(P), "P is not symmetric")
     side, r = claim["side"].text(), claim["radius"].number()
+    require_change(M, radius, side, r, witness)
+    fate = " (stable)" if side == "below" and r <= 1 else " (unstable)" if side == "above" and r >= 1 else ""
+    return [
+        f"every Floquet multiplier is below {show(r)} in modulus{fate}"
+        if side == "below"
+        else f"some Floquet multiplier is above {show(r)} in modulus{fate}",
+        f"for x' = (A - g(t) B K) x, A = {show_matrix(A)}, B = {show_matrix(B)}, K = {show_matrix(K)},",
+        describe_profile(profile),
+    ]
+
+
+def require_change(M: Matrix, radius: Fraction, side: str, r: Fraction, witness: Node) -> None:
+    """Check that V = x'Px falls below r^2 V, or grows above it, from x to M x, M known to `radius`."""
+    n, P = len(M), witness["P"].matrix(len(M), len(M))
+    require(is_symmetric(P), "P is not symmetric")
     require(side in ("below", "above") and r > 0, "a spectral radius lies below or above a positive number")
     error = n * radius
     room = (2 * n * norm(M) * error + error**2) * norm(P)
@@ -2169,14 +2182,6 @@ def check_floquet(data: Node, certificate: Node) -> list[str]:
         x = witness["x"].vector(n)
         value = sum((x[i] * P[i][j] * x[j] for i in range(n) for j in range(n)), Fraction(0))
         require(value > 0, "x'Px is not positive")
-    fate = " (stable)" if side == "below" and r <= 1 else " (unstable)" if side == "above" and r >= 1 else ""
-    return [
-        f"every Floquet multiplier is below {show(r)} in modulus{fate}"
-        if side == "below"
-        else f"some Floquet multiplier is above {show(r)} in modulus{fate}",
-        f"for x' = (A - g(t) B K) x, A = {show_matrix(A)}, B = {show_matrix(B)}, K = {show_matrix(K)},",
-        describe_profile(profile),
-    ]
 
 
 # --- kind: lower bound of the peak torque -----------------------------------------------------------

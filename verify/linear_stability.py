@@ -7,9 +7,10 @@ multiplier is above r. Both are checked by the stand-alone checker; floats only 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
+from math import ceil
 from typing import Any, final
 
 import numpy as np
@@ -17,7 +18,7 @@ from numpy.typing import NDArray
 
 from ..models.linear import LinearPlant
 from . import checker
-from .certificates.format import Certificate, certificate_text
+from .certificates.format import Certificate, as_text, certificate_text
 from .certificates.schedule import schedule_data
 from .rational_quantity import rational_quantity
 from .verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict, Witness
@@ -25,6 +26,9 @@ from .verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict, Witness
 Array = NDArray[np.float64]
 BACKING_OFF = (1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
 """Relative distances from the computed spectral radius at which a P is tried, nearest first."""
+MOST_STEPS = 20_000
+"""Steps of the enclosure that are tried; each is about a millisecond for a small plant."""
+Enclosed = tuple[checker.Matrix, Fraction]
 SOURCE = "Floquet's theorem; Stein's inequality"
 
 
@@ -51,19 +55,38 @@ def spectral_radius(plant: LinearPlant) -> SpectralRadius:
     ------
     ValueError
         If the schedule is not periodic.
+    OverflowError
+        If the plant is so fast, or the table so long, that the enclosure would take too many steps.
     """
     if plant.schedule.period is None:
         raise ValueError("Floquet multipliers need a periodic schedule: give it a period")
-    monodromy = plant.floquet().monodromy
-    guess = float(np.abs(np.linalg.eigvals(monodromy)).max())
-    upper = next(_proved(plant, monodromy, guess, "below"), None)
-    lower = next(_proved(plant, monodromy, guess, "above"), None)
+    if steps_needed(plant) > MOST_STEPS:
+        raise OverflowError(f"enclosing the monodromy matrix takes more than {MOST_STEPS} steps")
+    enclosed = _enclosure(plant)
+    centre = np.array([[float(x) for x in row] for row in enclosed[0]])
+    guess = float(np.abs(np.linalg.eigvals(centre)).max())
+    upper = _proved(plant, enclosed, centre, guess, "below")
+    lower = _proved(plant, enclosed, centre, guess, "above")
     found = tuple(c for c in (upper, lower) if c is not None)
     return SpectralRadius(
         Fraction(0) if lower is None else lower.claim["radius"],
         None if upper is None else upper.claim["radius"],
         found,
     )
+
+
+def steps_needed(plant: LinearPlant) -> int:
+    """Taylor steps of the enclosure, as the checker cuts a period: at least one a piece of g."""
+    feedback = checker.matrix_product(*([list(r) for r in plant.exact[name]] for name in ("B", "K")))
+    speed = checker.norm([list(row) for row in plant.exact["A"]]) + checker.norm(feedback)
+    knots = plant.schedule.profile.knots
+    return sum(max(1, ceil(4 * speed * (b - a))) for a, b in pairwise(knots))
+
+
+def _enclosure(plant: LinearPlant) -> Enclosed:
+    profile = checker.read_profile(checker.Node(as_text(_data(plant)), "data"))
+    A, B, K = ([list(row) for row in plant.exact[name]] for name in ("A", "B", "K"))
+    return checker.monodromy(A, checker.matrix_product(B, K), profile)
 
 
 def stability_claim(plant: LinearPlant) -> Claim:
@@ -75,7 +98,13 @@ def stability_claim(plant: LinearPlant) -> Claim:
             "linear.stable", title, statement, Verdict.UNDECIDED, source=SOURCE,
             reason="the schedule is a finite table", next_step="give it a period",
         )  # fmt: skip
-    found = spectral_radius(plant)
+    try:
+        found = spectral_radius(plant)
+    except OverflowError as error:
+        return Claim(
+            "linear.stable", title, statement, Verdict.UNDECIDED, source=SOURCE,
+            reason=str(error), next_step="scale the fast states, or give fewer windows a period",
+        )  # fmt: skip
     quantities = _quantities(found)
     if found.high is not None and found.high <= 1:
         evidence = _evidence(found, "P > 0 with M'PM < r^2 P")
@@ -104,21 +133,27 @@ def stability_claim(plant: LinearPlant) -> Claim:
     )  # fmt: skip
 
 
-def _proved(plant: LinearPlant, monodromy: Array, guess: float, side: str) -> Iterator[Certificate]:
-    """Certificates the checker accepts, tightest first."""
+def _proved(
+    plant: LinearPlant, enclosed: Enclosed, centre: Array, guess: float, side: str
+) -> Certificate | None:
+    """The tightest certificate of one side that the checker accepts."""
     if guess <= 0:
-        return
-    data = _data(plant)
+        return None
     for distance in BACKING_OFF:
         r = Fraction(guess) * (1 + (Fraction(distance) if side == "below" else -Fraction(distance)))
         r = Fraction(round(r * 2**60), 2**60)
-        witness = _stein(monodromy / float(r), side)
-        if witness is None or r <= 0:
+        witness = _stein(centre / float(r), side) if r > 0 else None
+        if witness is None:
             continue
-        certificate = Certificate("floquet", data, {"side": side, "radius": r}, witness)
+        try:
+            checker.require_change(*enclosed, side, r, checker.Node(as_text(witness), "witness"))
+        except checker.Invalid:
+            continue
+        certificate = Certificate("floquet", _data(plant), {"side": side, "radius": r}, witness)
         (finding,) = checker.check_text(certificate_text([certificate]))
         if finding.valid:
-            yield certificate
+            return certificate
+    return None
 
 
 def _stein(scaled: Array, side: str) -> dict[str, Any] | None:
@@ -142,11 +177,12 @@ def _stein(scaled: Array, side: str) -> dict[str, Any] | None:
 
 
 def _data(plant: LinearPlant) -> dict[str, Any]:
-    matrices = {
-        name: [[Fraction(x) for x in row] for row in getattr(plant, name).tolist()]
-        for name in ("A", "B", "K")
-    }
-    return {"plant": matrices, "schedule": schedule_data(plant.schedule)}
+    return plant_data(plant) | {"schedule": schedule_data(plant.schedule)}
+
+
+def plant_data(plant: LinearPlant) -> dict[str, Any]:
+    """The three matrices as certificate data."""
+    return {"plant": dict(plant.exact)}
 
 
 def _quantities(found: SpectralRadius) -> tuple[Quantity, ...]:

@@ -3,11 +3,16 @@
 import json
 from fractions import Fraction as F
 from math import exp
+from pathlib import Path
 
+import intermit
 import numpy as np
 import pytest
+from intermit.cli.app import run
 from intermit.models.linear import LinearPlant
 from intermit.models.schedule import Hermite, Window, build_schedule
+from intermit.scenario import load_scenario
+from intermit.study.check import scenario_claims
 from intermit.verify import checker
 from intermit.verify.certificates import as_text, certificate_text
 from intermit.verify.certificates.schedule import schedule_data
@@ -71,6 +76,50 @@ def test_finite_tables_are_undecided():
     assert stability_claim(plant([[-1]], [[1]], [[0]], finite)).verdict is Verdict.UNDECIDED
     with pytest.raises(ValueError, match="period"):
         spectral_radius(plant([[-1]], [[1]], [[0]], finite))
+
+
+def test_a_plant_too_fast_to_enclose_is_undecided():
+    for speed in ("1e3", "1e30"):
+        claim = stability_claim(LinearPlant.from_rows([["-" + speed]], [["1"]], [["0"]], paper_schedule()))
+        assert claim.verdict is Verdict.UNDECIDED
+        assert "steps" in claim.reason
+
+
+def test_decimals_are_proved_as_written():
+    """0.05 is 1/20, not the nearest float, in the certificate's data."""
+    claim = stability_claim(LinearPlant.from_rows([["-0.05"]], [["1"]], [["0.1"]], paper_schedule()))
+    certificate = claim.evidence[0].details["certificate"]
+    assert certificate.data["plant"]["A"] == ((F(-1, 20),),)
+    with pytest.raises(ValueError, match="one length"):
+        LinearPlant.from_rows([[1, 2], [3]], [[1], [1]], [[1, 1]], paper_schedule())
+
+
+STABLE = """
+[linear]
+A = [[0, 1], [-1, 0.05]]
+B = [[0], [1]]
+K = [[0, {damping}]]
+
+[[law]]
+type = "persistence-filter"
+"""
+
+
+@pytest.mark.parametrize(("damping", "verdict", "code"), [("1", "PROVED", 0), ("0.05", "REFUTED", 1)])
+def test_a_scenarios_plant_is_checked_certified_and_rechecked(tmp_path, capsys, damping, verdict, code):
+    example = Path(intermit.__file__).parent / "examples" / "paper.toml"
+    toml, file = tmp_path / "plant.toml", tmp_path / "plant.json"
+    toml.write_text(f'extends = "{example}"\n' + STABLE.format(damping=damping))
+    scenario = load_scenario(toml)
+    claim = {c.key: c for c in scenario_claims(scenario)}["linear.stable"]
+    assert claim.verdict.value == verdict
+    assert claim.verdict.exit_code == code
+    assert run(["certify", str(toml), "-o", str(file)]) == 0
+    assert run(["recheck", str(file), "--scenario", str(toml)]) == 0
+    assert "VALID  floquet" in capsys.readouterr().out
+    toml.write_text(toml.read_text().replace(f"0, {damping}", "0, 0.9"))
+    assert run(["recheck", str(file), "--scenario", str(toml)]) == 1
+    assert "plant" in capsys.readouterr().out
 
 
 def certificate_of(claim):
