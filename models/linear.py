@@ -63,8 +63,10 @@ class LinearPlant:
         for name, rows in exact.items():
             if not rows or len({len(row) for row in rows}) != 1:
                 raise ValueError(f"{name} must have rows of one length, received {[len(r) for r in rows]}")
-        floats = (np.array([[float(x) for x in row] for row in rows]) for rows in exact.values())
-        return cls(*floats, schedule, exact=exact)
+        first, second, third = (
+            np.array([[float(x) for x in row] for row in rows]) for rows in exact.values()
+        )
+        return cls(first, second, third, schedule, exact=exact)
 
     def __post_init__(self) -> None:
         for name in ("A", "B", "K"):

@@ -46,21 +46,28 @@ class Invalid(Exception):  # noqa: N818 (it is the word printed)
 
 # --- exact numbers ---------------------------------------------------------------------------
 
-_NUMBER = re.compile(r"[+-]?[0-9]+(?:/0*[1-9][0-9]*|(?:\.[0-9]+)?(?:[eE][+-]?[0-9]{1,4})?)")
+_NUMBER = re.compile(r"[+-]?[0-9]+(?:/0*[1-9][0-9]*|(?:\.[0-9]+)?(?:[eE]([+-]?[0-9]{1,4}))?)")
+MOST_DIGITS = 4000
+"""Of a number in the file. Longer ones are refused: a short file could otherwise be checked for ever."""
 
 
 def exact(text: object) -> Fraction:
     """Return the rational number that a string or an integer of the file stands for."""
     if isinstance(text, int) and not isinstance(text, bool):
         return Fraction(text)
-    if not isinstance(text, str) or not _NUMBER.fullmatch(text):
+    if isinstance(text, str) and len(text) > MOST_DIGITS:
+        raise Invalid(f"a number of {len(text)} characters: at most {MOST_DIGITS} digits are read")
+    found = _NUMBER.fullmatch(text) if isinstance(text, str) else None
+    if not isinstance(text, str) or found is None:
         raise Invalid(f"expected an exact number as a string, received {str(text)[:40]!r}")
+    if abs(int(found[1] or 0)) + len(text) > MOST_DIGITS:
+        raise Invalid(f"the number {text[:40]} has more than {MOST_DIGITS} digits")
     return Fraction(text)
 
 
 def show(value: Fraction) -> str:
     """Return the number for people: exact if short, else to 12 digits with a sign of rounding."""
-    if len(str(value)) <= 14:
+    if value.numerator.bit_length() + value.denominator.bit_length() < 60 and len(str(value)) <= 14:
         denominator = value.denominator
         while denominator % 2 == 0:
             denominator //= 2
@@ -183,10 +190,22 @@ def _no_float(text: str) -> Any:
     raise Invalid(f"the number {text[:40]} must be an exact string")
 
 
+def _integer(text: str) -> int:
+    if len(text) > MOST_DIGITS:
+        raise Invalid(f"a number of {len(text)} characters: at most {MOST_DIGITS} digits are read")
+    return int(text)
+
+
 def parse(text: str) -> Node:
     """Parse a certificate file."""
     try:
-        value = json.loads(text, object_pairs_hook=_unique, parse_float=_no_float, parse_constant=_no_float)
+        value = json.loads(
+            text,
+            object_pairs_hook=_unique,
+            parse_int=_integer,
+            parse_float=_no_float,
+            parse_constant=_no_float,
+        )
     except (ValueError, RecursionError) as error:
         raise Invalid(f"not JSON: {error}") from None
     return Node(value, "file")
@@ -419,6 +438,7 @@ class Poly:
         return self + (-other)
 
     def __mul__(self, other: Poly) -> Poly:
+        require(len(self.terms) * len(other.terms) <= MOST_TERMS**2, "a polynomial has too many terms")
         terms: dict[Exponents, Fraction] = {}
         for left, a in self.terms.items():
             for right, b in other.terms.items():
@@ -494,6 +514,21 @@ class Poly:
         return " ".join(parts).removeprefix("+ ") or "0"
 
 
+MOST_TERMS = 3000
+LARGEST_POWER = 60
+LARGEST_BASIS = 400
+"""Terms of a polynomial, powers in it, monomials of a Gram matrix: beyond, checking could take for ever."""
+
+
+def require_modest(p: Poly, path: str) -> None:
+    """Refuse a polynomial whose powers or numbers have grown beyond anything a law needs."""
+    require(len(p.terms) <= MOST_TERMS, f"{path}: a polynomial has too many terms")
+    powers = (abs(e) for key in p.terms for e in key)
+    require(max(powers, default=0) <= LARGEST_POWER, f"{path}: a power is too high")
+    sizes = (v.numerator.bit_length() + v.denominator.bit_length() for v in p.terms.values())
+    require(max(sizes, default=0) <= 8 * MOST_DIGITS, f"{path}: a number is too long")
+
+
 def on_sphere(p: Poly) -> Poly:
     """Return the normal form on |b| = 1: c^2 = 2 c - b1^2 - b2^2 - b3^2, where c = 1 - b0."""
     ring = p.ring
@@ -547,6 +582,7 @@ def run(program: Node, ring: Ring, symbols: dict[str, Poly]) -> dict[str, Poly]:
             values[target] = _BINARY[operation](values[operands[0]], values[operands[1]])
         else:
             raise Invalid(f"{line.path}: there is no operation {operation!r} of {len(operands)} operands")
+        require_modest(values[target], line.path)
     return values
 
 
@@ -894,6 +930,7 @@ def _sum_of_squares(ring: Ring, place: Node, claim: Node) -> Poly:
     result = ring.constant(0)
     for term in place.items():
         basis = [_monomial(ring, node.text()) for node in term["basis"].items()]
+        require(len(basis) <= LARGEST_BASIS, f"{term.path}: the basis is too long")
         gram = term["gram"].matrix(len(basis), len(basis))
         require(is_positive_semidefinite(gram), f"{term.path}: the Gram matrix is not positive semidefinite")
         form = ring.constant(0)
@@ -1161,6 +1198,7 @@ def read_profile(data: Node) -> Profile:
     require(all(0 <= i < len(table) for i in use), "a piece names a shape that is not there")
     require(knots[0] == 0 and all(a < b for a, b in pairwise(knots)), "knots must increase from 0")
     require(bool(table), "there are no shapes")
+    require(all(len(row) <= LARGEST_COUNT for row in table), "a shape has too many coefficients")
     require(
         all(from_powers(row or [Fraction(0)]).is_nonnegative() for row in table),
         "the gain is not proved >= 0",
@@ -2146,6 +2184,7 @@ def check_floquet(data: Node, certificate: Node) -> list[str]:
     plant, claim, witness = data["plant"], certificate["claim"], certificate["witness"]
     A, B, K = (plant[name].matrix() for name in ("A", "B", "K"))
     n = len(A)
+    require(n <= LARGEST_COUNT, "the plant has too many states")
     fits = len(A[0]) == n and len(B) == n and len(K) == len(B[0]) and len(K[0]) == n
     require(fits, "A, B and K do not fit each other")
     profile = read_profile(data)

@@ -7,8 +7,7 @@ from fractions import Fraction as F
 
 import pytest
 from intermit.models.laws import PersistenceFilter
-from intermit.models.schedule import Hermite, PiecewisePolynomial, Schedule, Window, build_schedule
-from intermit.models.schedule.polynomial import polynomial
+from intermit.models.schedule import Hermite, Window, build_schedule
 from intermit.verify import checker
 from intermit.verify.certificates import certificate_text
 from intermit.verify.enclosure.stepping import Stepper
@@ -63,12 +62,11 @@ def test_a_negative_gain_hides_no_torque(honest):
     assert not is_valid(fresh)
 
 
-def test_a_gain_that_jumps_is_refused():
+def test_a_gain_that_jumps_is_refused(honest):
     """Where g jumps, Omega = w + 2 g^2 kappa bv jumps, and no bound of it goes on."""
-    profile = PiecewisePolynomial((F(0), F(3), F(8)), (polynomial(1), ()))
-    windows = (Window(F(0), F(3)),)
-    jumping = replace(QUESTION, schedule=Schedule(windows=windows, profile=profile, period=F(8)))
-    (finding,) = findings_of(document_of(jumping))
+    fresh, data, _ = copy(honest)
+    data["schedule"] = {"knots": ["0", "3", "8"], "shapes": [["1"], []], "pieces": ["0", "1"], "period": "8"}
+    (finding,) = findings_of(fresh)
     assert not finding.valid
     assert "jumps" in finding.reason
 
@@ -245,6 +243,40 @@ def test_a_settling_time_beyond_all_reason_is_refused_at_once(honest):
     fresh, _, certificate = copy(honest)
     certificate["claim"]["settling"]["time"] = "1e4000"
     assert not is_valid(fresh)
+
+
+BOMBS = {
+    "long number": lambda data: data["inertia"][0].__setitem__(0, "9" * 10**6),
+    "high exponent": lambda data: data["inertia"][0].__setitem__(0, "1e9999"),
+    "low exponent": lambda data: data["inertia"][0].__setitem__(0, "1e-9999"),
+    "squares of squares": lambda data: data["law"]["program"].extend(squares("const 3")),
+    "powers of powers": lambda data: data["law"]["program"].extend(squares("assign b0")),
+    "terms of terms": lambda data: data["law"]["program"].extend(squares("add b0 w1")),
+}
+
+
+def squares(first):
+    yield f"v900 = {first}"
+    for i in range(901, 1000):
+        yield f"v{i} = sq v{i - 1}"
+
+
+@pytest.mark.parametrize("bomb", BOMBS.values(), ids=BOMBS.keys())
+def test_short_files_are_never_checked_for_ever(bomb):
+    """Each would take longer than anybody waits; what is too long is refused at once, and said so."""
+    document = derivative_of("states")
+    bomb(document["parts"][0]["data"])
+    (finding,) = findings_of(document)
+    assert not finding.valid
+    assert any(word in finding.reason for word in ("digits", "too long", "too high", "too many"))
+
+
+def test_a_long_json_integer_is_refused_at_once(honest):
+    fresh, _, certificate = copy(honest)
+    certificate["claim"]["floor"] = "LONG"
+    text = json.dumps(fresh).replace('"LONG"', "7" * 10**6)
+    (finding,) = checker.check_text(text)
+    assert "digits" in finding.reason
 
 
 JUNK = (None, True, 0, -1, "", "nan", "inf", "-1", "1/0", "1e9999", "1.5", [], {}, [[]], ["1"], "x", [None])

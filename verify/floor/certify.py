@@ -148,7 +148,15 @@ def certify_floor(
     Floor
         Its `stuck` tells where nothing could be proved any more, if anywhere; its `horizon`, how
         far the certificate reaches.
+
+    Raises
+    ------
+    ValueError
+        If g jumps: the laws use g', and Omega = w + 2 g^2 kappa bv would jump with g.
     """
+    jump = _first_jump(schedule)
+    if jump is not None:
+        raise ValueError(f"g jumps at {float(jump):g} s: no floor of R can be certified")
     options = options or FloorOptions()
     system = comparison_system(law, bounds)
     if system is None:
@@ -163,6 +171,17 @@ def certify_floor(
     ends = [w.stuck if w.stuck is not None else w.end for w in witnesses]
     reached = None if all(w.tail is not None for w in witnesses) else min(ends)
     return Floor(law, bounds, schedule, initial, witnesses, reached)
+
+
+def _first_jump(schedule: Schedule) -> Fraction | None:
+    """Instant at which g jumps, to zero at the end of a table too; None if it is continuous."""
+    shapes, zero = schedule.profile.shapes, Fraction(0)
+    ends = {shape: sum(shape, zero) for shape in dict.fromkeys(shapes)}
+    after = (*shapes[1:], shapes[0] if schedule.is_periodic else ())
+    for shape, following, knot in zip(shapes, after, schedule.profile.knots[1:], strict=True):
+        if ends[shape] != (following[0] if following else zero):
+            return knot
+    return None
 
 
 @final

@@ -6,7 +6,7 @@ from fractions import Fraction as F
 import numpy as np
 import pytest
 from intermit.models.laws import QuaternionPD
-from intermit.models.schedule import Hermite, Window, build_schedule
+from intermit.models.schedule import Hermite, PiecewisePolynomial, Schedule, Window, build_schedule
 from intermit.verify.enclosure.stepping import Stepper, is_proved
 from intermit.verify.floor.certify import FloorOptions, certify_floor, comparison_system
 from intermit.verify.floor.comparison import BodyBounds
@@ -16,6 +16,16 @@ from scipy.integrate import solve_ivp
 
 BOUNDS = BodyBounds.of(J1)
 EXAMPLE = InitialSet.from_bounds(BOUNDS, max_angle_deg=F(120), max_weighted_rate=F("0.3"))
+
+
+def test_a_gain_that_jumps_is_refused():
+    jumping = PiecewisePolynomial((F(0), F(1), F(2)), ((F(0), F(1)), (F(2), F(-2))))
+    late = Schedule((Window(F(0), F(2)),), jumping, None)
+    with pytest.raises(ValueError, match="g jumps at 1 s"):
+        certify_floor(PERSISTENCE, BOUNDS, late, EXAMPLE)
+    sudden = Schedule((Window(F(0), F(2)),), PiecewisePolynomial((F(0), F(2)), ((F(1),),)), None)
+    with pytest.raises(ValueError, match="g jumps at 2 s"):
+        certify_floor(PERSISTENCE, BOUNDS, sudden, EXAMPLE)
 
 
 def test_persistence_filter_reaches_its_target():
