@@ -72,15 +72,22 @@ class LawChoice:
         """
         keywords = {("lambda_" if n == "lambda" else n): v for n, v in self.parameters}
         if self.type == USER:
+            from ..models.closed_loop import close_loop
             from .user_law import load_law_class
 
             assert self.file is not None
             assert self.class_name is not None
             law_class = load_law_class(self.file, self.class_name, self.where)
             try:
-                return law_class(**keywords)
+                law = law_class(**keywords)
             except (TypeError, ValueError) as error:
                 raise ScenarioError(f"{self.where}.parameters", f"{self.class_name}: {error}") from None
+            try:
+                close_loop(law)
+            except Exception as error:  # whatever the user's own code does
+                said = next(iter(str(error).splitlines()), type(error).__name__)
+                raise ScenarioError(f"{self.where}.class", f"{self.class_name}: {said}") from error
+            return law
         from ..models.laws import LAWS
 
         try:

@@ -182,6 +182,25 @@ def test_user_law_that_cannot_be_run(workshop, source, message):
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("torque", "message"),
+    [
+        ("plant.w * ca.SX.sym('zz')", "law mine uses the symbol zz, which is none of those it was given"),
+        ("plant.b0", "law mine: the torque must have shape (3,), received (1, 1)"),
+        ("parameters['gain'] * plant.w", "'gain'"),
+        ("ca.mtimes(plant.w, plant.w)", ""),
+    ],
+)
+def test_user_law_whose_torque_is_none(workshop, torque, message):
+    source = USER_LAW.replace('-parameters["stiffness"] * plant.bv', torque)
+    (workshop.folder / "mine.py").write_text("import casadi as ca\n" + source)
+    text = 'type = "user"\nfile = "mine.py"\nclass = "Mine"\nparameters = { stiffness = 1 }'
+    with pytest.raises(ScenarioError) as caught:
+        workshop.load(law=text).laws[0].build()
+    assert str(caught.value).startswith(f"scenario.toml: law[1].class: Mine: {message}")
+    assert "\n" not in str(caught.value)
+
+
 def test_a_law_named_on_the_command_line_joins_the_others(workshop):
     (workshop.folder / "mine.py").write_text(USER_LAW)
     scenario = workshop.load()

@@ -1,12 +1,11 @@
 """V' as a function of the coordinates in which its sign is studied: (beta, Omega, controller, g, g').
 
 The model's own expressions are taken and w is replaced by Omega - 2 g^2 kappa bv; nothing of the
-dynamics is written again here. What is written here is what the theory states about V', so that
-the two can be compared.
+dynamics is written again here. What is added is what the theory states about V', so that the two can
+be compared: the paper's bound, and the exact form V' = R Q + g^2 (1 - k* R) P, which follows by
+|beta| = 1 (Q and P: `verify.lyapunov.candidates`).
 
-Source: Ram & Akella, AAS 21-402, stability analysis; the exact form V' = R Q + g^2 (1 - k* R) P
-with Q = -lambda Omega'J Omega - 2 a lambda (1 - b0) + a bv.Omega and
-P = 2 a |bv|^2 + (1 + b0) Omega'J Omega follows from it by |beta| = 1.
+Source: Ram & Akella, AAS 21-402, stability analysis.
 """
 
 from __future__ import annotations
@@ -21,6 +20,7 @@ import casadi as ca
 from ...models.closed_loop import ClosedLoop
 from ...models.laws import Expression
 from ...models.storage import Storage, weighted_storage
+from ..lyapunov.candidates import bracket_terms, candidate
 
 EXTRA_NAMES = ("a", "k_target", "J_min")
 RESULTS = ("rate", "storage", "bound", "by_differentiation", "stated", "scale")
@@ -57,12 +57,13 @@ def derivative_function(loop: ClosedLoop) -> DerivativeFunction:
     Raises
     ------
     ValueError
-        If the law has neither, or uses signals of time beside g.
+        If the law has neither, resets its states, or uses signals of time beside g.
     """
     if loop.time_symbols.signals:
         raise ValueError(f"law {loop.law.name} uses signals of time beside g: its V' is not sampled")
+    chosen = candidate(loop)
     extra = {name: ca.SX.sym(name) for name in EXTRA_NAMES}
-    own = loop.law.storage(loop.plant, loop.time_symbols, loop.controller_states, loop.parameter_symbols)
+    own = chosen.value if chosen.right_side is None else None
     if own is None:
         results = _family_results(loop, extra)
     else:
@@ -85,14 +86,12 @@ def _family_results(loop: ClosedLoop, extra: Mapping[str, Expression]) -> list[E
 
 def _stated(loop: ClosedLoop, storage: Storage, J_min: Expression) -> tuple[Expression, Expression]:
     """V' in the stated closed form, and the paper's bound on it."""
-    b0, bv, Omega = loop.plant.b0, loop.plant.bv, loop.augmented_rate
+    b0, Omega = loop.plant.b0, loop.augmented_rate
     R, lam = loop.controller_states["R"], loop.parameter_symbols["lambda"]
     a, g = storage.weight, loop.time_symbols.g
-    energy = ca.dot(Omega, loop.plant.J @ Omega)
-    Q = -lam * energy - 2 * a * lam * (1 - b0) + a * ca.dot(bv, Omega)
+    Q, P = bracket_terms(loop, a)
     stated = R * Q
     if storage.gain_target is not None:
-        P = 2 * a * ca.sumsqr(bv) + (1 + b0) * energy
         stated = stated + g**2 * (1 - storage.gain_target * R) * P
     rate_part = -(lam * J_min - a / 2) * R * ca.sumsqr(Omega)
     return stated, rate_part - 2 * a * (lam - (1 + b0) / 4) * R * (1 - b0)
