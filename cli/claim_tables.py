@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, final
 
 from ..reports.numbers import write
 from ..study.claims import quantity_entry
-from ..study.keys import CLAIM_KEYS, order_of
+from ..study.keys import order_of
 from ..verify.verdict import Claim, Quantity, Verdict, Witness
 
 if TYPE_CHECKING:
@@ -79,10 +79,7 @@ def witness_text(witness: Witness) -> str:
 
 def _titles(columns: Sequence[Column]) -> dict[str, str]:
     titles = {claim.key: claim.title for column in columns for claim in column.claims}
-    return {
-        key: CLAIM_KEYS[key].title if key in CLAIM_KEYS else titles[key]
-        for key in sorted(titles, key=order_of)
-    }
+    return {key: titles[key] for key in sorted(titles, key=order_of)}
 
 
 def _verdict(claim: Claim | None) -> Text:

@@ -10,7 +10,9 @@ from pathlib import Path
 
 import pytest
 from intermit.reports.record import read_record
+from intermit.study.keys import CLAIM_KEYS
 
+ONE_LAW = '[[law]]\ntype = "persistence-filter"\n'
 Run = Callable[..., tuple[int, str, str]]
 Write = Callable[..., Path]
 
@@ -43,6 +45,8 @@ def test_record_is_whole_and_its_outcome_is_the_exit_code(
     assert record.document["outcome"]["exit_code"] == code
     assert record.document["outcome"]["sentence"] in text
     assert len(record.sections["cases"]) == 1
+    for key, claim in claims_of(out).items():
+        assert claim["title"] == CLAIM_KEYS[key].title  # one name everywhere
 
 
 @pytest.mark.slow
@@ -55,6 +59,19 @@ def test_same_scenario_same_bytes_in_any_number_of_processes(
     for suffix in (".json", ".npz"):
         first, second = ((tmp_path / name).with_suffix(suffix).read_bytes() for name in ("a", "b"))
         assert first == second
+
+
+def test_a_torque_limit_that_the_run_exceeds_is_refuted(
+    intermit: Run, write_scenario: Write, tmp_path: Path
+) -> None:
+    """The run peaks at 8.0 N m; the certified bound, 42 N m, can prove neither limit."""
+    for limit, code, verdict in (("6.0", 1, "REFUTED"), ("8.1", 3, "UNDECIDED")):
+        scenario = write_scenario(f'{ONE_LAW}\n[limits]\ntorque = {limit}\nnorm = "component"\n')
+        out = tmp_path / f"{limit}.json"
+        assert intermit("check", *QUICK, scenario, "--json", out)[0] == code
+        claim = claims_of(out)["torque.limit"]
+        assert claim["verdict"] == verdict
+        assert (claim["witness"] is None) == (verdict == "UNDECIDED")
 
 
 def test_smaller_lambda_refutes_the_sign_of_v_but_not_the_convergence_of_the_laws(

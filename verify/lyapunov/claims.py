@@ -72,7 +72,7 @@ def certificates_of(claims: Iterable[Claim]) -> tuple[Certificate, ...]:
 def _no_storage(reason: str) -> Claim:
     return Claim(
         key="lyapunov.derivative",
-        title="Sign of V'",
+        title="V' <= 0",
         statement="V' <= 0 at every attitude and rate",
         verdict=Verdict.UNDECIDED,
         reason=reason,

@@ -201,7 +201,7 @@ def _claim(
         evidence = (Evidence(EvidenceKind.CERTIFICATE, summary, source, {"certificate": certificate}),)
     elif witness is not None:
         evidence = (Evidence(EvidenceKind.WITNESS, "evaluated exactly in rationals", source),)
-    titles = {"lambda.paper": "The paper's condition on lambda", "lambda.sharp": "Sharp condition on lambda"}
+    titles = {"lambda.paper": "paper's condition on lambda", "lambda.sharp": "sharp condition on lambda"}
     return Claim(
         key=key,
         title=titles[key],

@@ -201,8 +201,8 @@ def _claim(
     reason: str = "",
 ) -> Claim:
     titles = {
-        "lyapunov.derivative": "Sign of V'",
-        "lambda.rate": "Certified decay rate of the weighted family",
+        "lyapunov.derivative": "V' <= 0",
+        "lambda.rate": "certified decay rate",
     }
     return Claim(
         key=key,

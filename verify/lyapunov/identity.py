@@ -115,7 +115,7 @@ def _claim(
 ) -> Claim:
     return Claim(
         key="lyapunov.identity",
-        title="Derivative of the storage function in closed form",
+        title="closed form of V'",
         statement=statement,
         verdict=verdict,
         evidence=evidence,
