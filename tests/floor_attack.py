@@ -67,7 +67,7 @@ def random_inertia(rng):
     return [[decimal(J[min(i, j), max(i, j)]) for j in range(3)] for i in range(3)]
 
 
-FIGURES = ("floor", "angle", "rate", "torque", "settled", "decay")
+FIGURES = ("floor", "angle", "rate", "torque", "settled", "decay", "command", "gain")
 """What is attacked; each as a ratio that must not exceed one."""
 
 
@@ -80,6 +80,7 @@ class Attack:
     floor : certified floor over the least R simulated
     angle, rate, torque, settled : largest simulated over certified
     decay : the same of angle, rate and 1/R against their bounds at each instant
+    command, gain : the same of |u| while g > 0 and of kappa
     """
 
     certified: bool
@@ -89,6 +90,8 @@ class Attack:
     torque: float = 0.0
     settled: float = 0.0
     decay: float = 0.0
+    command: float = 0.0
+    gain: float = 0.0
 
     @property
     def largest(self) -> float:
@@ -143,7 +146,7 @@ class Adversary:
         return int(min(wanted, self.most_periods)) * period
 
     def ratios(self, q: FloorQuestion, found: FloorAnswer, shape: _Shape, points):
-        """Figures of each start, (6, n); 0 for a start that is not in the set."""
+        """Figures of each start, (8, n); 0 for a start that is not in the set."""
         floor, bound = found.floor, found.convergence
         horizon = self.horizon(q, found)
         cycles = 1 if q.schedule.period is None else int(horizon / q.schedule.period)
@@ -166,7 +169,9 @@ class Adversary:
         chord = np.linalg.norm(runs.states[:, :, :4] - [1, 0, 0, 0], axis=2) / 2
         angle = 4 * np.arcsin(np.clip(chord, 0, 1))
         speed = np.linalg.norm(runs.states[:, :, 4:7], axis=2)
-        R = runs.states[:, :, 7 + [s.name for s in q.law.controller_states].index("R")]
+        controller = {s.name: runs.states[:, :, 7 + i] for i, s in enumerate(q.law.controller_states)}
+        R = controller["R"]
+        kappa = controller["k"].max(axis=1) if "k" in controller else 1 / m.filter_minimum
         held = envelope(floor, times)
         # what the simulation does not resolve, an error of 1e-9 of the first value, is no violation
         now = [
@@ -184,6 +189,8 @@ class Adversary:
             m.peak_euclidean / max(found.torque.applied, tiny),
             settled,
             np.max(now, axis=(0, 2)),
+            m.peak_commanded_euclidean / max(found.torque.commanded, tiny),
+            kappa / max(found.torque.gain, tiny),
         ]
         return np.where(inside, np.stack(rows), 0.0)
 

@@ -12,8 +12,6 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any, final
 
-from flint import arb
-
 from ...models.schedule import Schedule
 from ...models.schedule import polynomial as poly
 from ...models.schedule.piecewise import Piece
@@ -49,7 +47,6 @@ class _Solution:
     particular: poly.Coefficients
     decay: Fraction
     initial: Any
-    greatest_gain: Fraction
 
     def _polynomial(self, tau: Any, coefficients: poly.Coefficients) -> Any:
         value = ball(0)
@@ -63,13 +60,16 @@ class _Solution:
         return self._polynomial(tau, self.particular) + free * (-ball(self.decay) * tau).exp()
 
     def rate(self, low: Any, high: Any) -> Any:
-        """Ball around R' on [low, high], from R' = -lambda R + 2 g^2 and |R'| <= 4 max g^2.
+        """Ball around R' on [low, high], from R' = -lambda R + 2 g^2 and a ball around R there.
 
-        (The closed form itself cancels badly on intervals.)
+        R is at least R(low) exp(-lambda (high - low)) and at most R(low) plus the integral of 2 g^2,
+        however small R is beside g^2. (The closed form itself cancels badly on intervals.)
         """
-        middle, reach = (low + high) / 2, (high - low) / 2
-        value = self.value(middle) + ball(4 * self.greatest_gain**2) * reach * arb(0, 1)
         g = self._polynomial(low.union(high) / ball(self.piece.length), self.piece.shape)
+        width = high - low
+        intake = 2 * (g * g).union(ball(0))
+        first = self.value(low)
+        value = (first * (-ball(self.decay) * width).exp()).union(first + intake * width)
         return 2 * g * g - ball(self.decay) * value
 
 
@@ -116,11 +116,9 @@ class ConvergedFilter:
 
     def _march(self, initial: Any) -> tuple[_Solution, ...]:
         solutions: list[_Solution] = []
-        shapes = set(self.schedule.profile.shapes)
-        greatest = max(abs(c) for shape in shapes for c in poly.bernstein(shape))
         for piece in self.schedule.profile.pieces:
             q = particular_solution(piece.local_coefficients(), self.decay)
-            solutions.append(_Solution(piece, q, self.decay, initial, greatest))
+            solutions.append(_Solution(piece, q, self.decay, initial))
             initial = solutions[-1].value(ball(piece.length))
         return tuple(solutions)
 
@@ -135,7 +133,7 @@ class ConvergedFilter:
         """Enclosure of the least R over a period."""
         high, instant = min((_attained(s) for s in self._solutions), key=lambda pair: pair[0])
         low = min(_lower_bound(s, high * (1 - RELATIVE_WIDTH)) for s in self._solutions)
-        return ConvergedFloor(min(low, high), high, instant)
+        return ConvergedFloor(max(min(low, high), 0.0), high, instant)  # R is positive whatever is enclosed
 
 
 def _attained(solution: _Solution) -> tuple[float, float]:

@@ -5,6 +5,7 @@ from fractions import Fraction as F
 import numpy as np
 import pytest
 from intermit.models.schedule import Hermite, Window, build_schedule
+from intermit.verify.floor import converged
 from intermit.verify.floor.converged import ConvergedFilter, particular_solution
 from problems import CONVERGED_FILTER_FLOOR, paper_schedule
 from scipy.integrate import solve_ivp
@@ -20,15 +21,15 @@ def test_known_digits(as_printed, value):
 
 def test_the_solution_is_periodic_and_solves_the_filter():
     schedule, lam = paper_schedule(), 0.525
-    converged = ConvergedFilter(schedule, F("0.525"))
-    low, high = converged.at(F(0))
+    motion = ConvergedFilter(schedule, F("0.525"))
+    low, high = motion.at(F(0))
     assert high - low < 1e-12
     run = solve_ivp(
         lambda t, R: -lam * R + 2 * schedule.gain(t) ** 2, (0, 8), [low],
         rtol=1e-12, atol=1e-14, max_step=0.02, dense_output=True,
     )  # fmt: skip
     for t in np.linspace(0, 8, 33):
-        assert run.sol(t)[0] == pytest.approx(converged.at(F(float(t)))[0], abs=1e-9)
+        assert run.sol(t)[0] == pytest.approx(motion.at(F(float(t)))[0], abs=1e-9)
 
 
 def test_time_scaling():
@@ -53,3 +54,20 @@ def test_bad_input_is_refused():
         ConvergedFilter(finite, F(1))
     with pytest.raises(ValueError, match="lambda"):
         ConvergedFilter(paper_schedule(), F(0))
+
+
+@pytest.mark.parametrize("decay", [F(2), F(8), F(12)])
+def test_a_filter_that_nearly_empties_is_enclosed_as_tightly(decay):
+    """At lambda T = 96 the least R is 1e-25 of the greatest; what bounds it must scale with it."""
+    schedule = paper_schedule(as_printed=False)
+    floor = ConvergedFilter(schedule, decay).floor()
+    assert 0 < floor.low <= floor.high < floor.low * (1 + 2e-9)
+    # over the off-interval of 4.8 s R falls by exp(-lambda 4.8), and the rise begins only then
+    closing = ConvergedFilter(schedule, decay).at(F("3.21"))[1]
+    assert floor.high < closing * np.exp(-4.8 * float(decay)) * (1 + 1e-9)
+
+
+def test_a_filter_below_the_working_precision_is_bounded_by_zero(monkeypatch):
+    monkeypatch.setattr(converged, "MAX_EVALUATIONS", 50)  # it would search in vain
+    floor = ConvergedFilter(paper_schedule(), F(60)).floor()
+    assert 0 <= floor.low <= floor.high
