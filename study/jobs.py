@@ -16,7 +16,7 @@ from heapq import heappop, heappush
 from multiprocessing import get_context
 from multiprocessing.pool import Pool
 from queue import Empty, SimpleQueue
-from threading import Lock
+from threading import Lock, current_thread, main_thread
 from typing import Any, final
 
 from ..scenario import LawChoice, Scenario
@@ -161,8 +161,11 @@ def crew(jobs: int, workers: int, tell: Progress) -> Iterator[Crew]:
     if others < 1:
         yield Crew(None, 0, jobs, tell)
         return
-    with one_thread_each(), get_context("spawn").Pool(others, initializer=ignore_interrupt) as pool:
-        yield Crew(pool, others, jobs, tell)
+    with one_thread_each():
+        with _deaf():  # new processes inherit it, so that an interrupt cannot reach them as they begin
+            pool = get_context("spawn").Pool(others, initializer=ignore_interrupt)
+        with pool:
+            yield Crew(pool, others, jobs, tell)
 
 
 @contextmanager
@@ -175,6 +178,19 @@ def one_thread_each() -> Iterator[None]:
     finally:
         for name in missing:
             del os.environ[name]
+
+
+@contextmanager
+def _deaf() -> Iterator[None]:
+    """Ignore interrupts for a moment; only the main thread can."""
+    if current_thread() is not main_thread():
+        yield
+        return
+    handler = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, handler)
 
 
 def ignore_interrupt() -> None:
