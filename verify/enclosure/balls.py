@@ -58,7 +58,7 @@ def fraction_below(value: Fraction) -> float:
 
 def fraction_above(value: Fraction) -> float:
     """Return a float >= the rational."""
-    return -fraction_below(-value)
+    return 0.0 - fraction_below(-value)  # 0, not -0
 
 
 def sqrt_above(value: Fraction) -> float:

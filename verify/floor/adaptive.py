@@ -24,7 +24,17 @@ from ..enclosure.balls import fraction_above, fraction_below
 from ..enclosure.bernstein import Bernstein, rational
 from ..enclosure.stepping import Modes
 from .adaptive_tail import AdaptiveTailSystem
-from .comparison import BLIND, ONE, ROUND_UP, TWO, angle_factor, angle_factor_float, at_least_tiny
+from .comparison import (
+    BLIND,
+    ONE,
+    ROUND_UP,
+    TWO,
+    angle_factor,
+    angle_factor_float,
+    at_least_tiny,
+    audible,
+    filter_scale,
+)
 from .sets import InitialSet
 from .witness import Array, LawComparison
 
@@ -115,7 +125,8 @@ class AdaptiveSystem(LawComparison):
         """Give up lower bounds of y and s where they no longer help; keep upper ones off underflow."""
         y, s, k, r, Y, Z, L, U = state
         low = (0.0 if y < FAINT * Y else y, 0.0 if modes[0] == "zero" else s)
-        return (*low, k, r, at_least_tiny(Y), at_least_tiny(Z), L, U)
+        Z = at_least_tiny(Z)
+        return (*low, k, r, audible(Y, Z, self._lam / self.coupling), Z, L, U)
 
     def choices(self, state: Sequence[float], peak: float) -> Sequence[Modes]:
         """Whether the lower bound of s is kept; how to bound f from above, best now first; k held last."""
@@ -173,7 +184,7 @@ class AdaptiveSystem(LawComparison):
             -low_pull * y - scale * y,
             s_rate,
             0.0 if "held" in modes else k_rate,
-            -lam * r + G * room_high - slack * (lam * r + peak),
+            -lam * r + G * room_high - slack * filter_scale(lam * r, peak),
             -high_pull * Y + scale * Y,
             drift * angle_factor_float(T) - high_pull * Z + scale * Z + spread,
             gamma * U * G * f_high + gain_scale,

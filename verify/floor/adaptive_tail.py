@@ -17,7 +17,7 @@ from typing import final
 
 from ..enclosure.bernstein import Bernstein, rational
 from ..enclosure.stepping import Modes
-from .comparison import BLIND, ROUND_UP, TWO
+from .comparison import BLIND, ROUND_UP, TWO, filter_scale
 from .tail import PeriodicSystem
 
 
@@ -67,7 +67,7 @@ class AdaptiveTailSystem(PeriodicSystem):
         intake = 2.0 * self._gamma * U * (Y * Y + 2.0 * self._a * T)
         return (
             0.0,
-            -lam * r + G * (2.0 - T) - slack * (lam * r + peak),
+            -lam * r + G * (2.0 - T) - slack * filter_scale(lam * r, peak),
             (scale - pull) * Y,
             self._coupling * Y * (1.0 + 0.1 * slack) + (scale - pull) * Z,
             intake * (G + slack * peak) + 1e-11 * peak * (L + lam),

@@ -47,6 +47,11 @@ NO_BOUND = 1.5
 ROUND_UP = 1 + 1e-14
 """Covers the rounding of a few float operations on positive numbers (each 1.2e-16 relative)."""
 
+AUDIBLE = 1e-6
+"""Least rate, as a share of lambda, at which an upper bound of y lets that of s grow."""
+REACH = 1e3
+"""How many times lambda r the slack of r may be where r is far below what a window brings."""
+
 
 @final
 @dataclass(frozen=True)
@@ -100,3 +105,21 @@ def angle_factor_float(S: float) -> float:
 def at_least_tiny(value: float) -> float:
     """Raise a positive upper bound to 1e-60, far from underflow; leave 0, which stays 0 by itself."""
     return max(value, 1e-60) if value > 0 else value
+
+
+def audible(y: float, s: float, scale: float) -> float:
+    """Raise a positive upper bound y so that its share c y in s' is not lost in the rounding of s.
+
+    `scale` is lambda/c. Exactly 0 stays 0: the rate of a body at rest.
+    """
+    return max(y, 1e-60, AUDIBLE * scale * s) if y > 0 else y
+
+
+def filter_scale(loss: float, peak: float) -> float:
+    """Size of the terms of r', 1: of the loss lambda r and of the intake, at most `peak`.
+
+    After a long off-interval r may be 1e-8 of what a window brings; a slack that took its size from
+    the window would push it below zero.
+    """
+    most = REACH * max(loss, 0.0)
+    return loss + (peak * most / (peak + most) if most > 0 else 0.0)

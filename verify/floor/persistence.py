@@ -24,7 +24,18 @@ import numpy as np
 from ..enclosure.balls import fraction_below
 from ..enclosure.bernstein import Bernstein, rational
 from ..enclosure.stepping import Modes
-from .comparison import BLIND, NO_BOUND, ONE, ROUND_UP, TWO, angle_factor, angle_factor_float, at_least_tiny
+from .comparison import (
+    BLIND,
+    NO_BOUND,
+    ONE,
+    ROUND_UP,
+    TWO,
+    angle_factor,
+    angle_factor_float,
+    at_least_tiny,
+    audible,
+    filter_scale,
+)
 from .sets import InitialSet
 from .witness import Array, LawComparison
 
@@ -109,7 +120,8 @@ class PersistenceSystem(LawComparison):
         """Give up s where its bound has reached sqrt 2; keep upper bounds off underflow."""
         K, y, s, v, z, r = state
         s = NO_BOUND if modes[0] == "blind" else s
-        return (K, at_least_tiny(y), at_least_tiny(s), at_least_tiny(v), at_least_tiny(z), r)
+        s, z, scale = at_least_tiny(s), at_least_tiny(z), self._lam / self.coupling
+        return (K, audible(y, s, scale), s, audible(v, z, scale), z, r)
 
     def rate(
         self, gain_square: float, state: Sequence[float], modes: Modes, peak: float, slack: float
@@ -133,7 +145,7 @@ class PersistenceSystem(LawComparison):
             r_rate = -lam * r + G * (2.0 - 2.0) - slack * (lam * r)
         else:
             sigma = S if modes[1] == "angle" else R0 * z * z / r
-            r_rate = -lam * r + G * (2.0 - sigma) - slack * (lam * r + peak)
+            r_rate = -lam * r + G * (2.0 - sigma) - slack * filter_scale(lam * r, peak)
         return (K_rate, y_rate, s_rate, v_rate, z_rate, r_rate)
 
     def conditions(

@@ -10,6 +10,7 @@ from intermit.models.schedule import Hermite, PiecewisePolynomial, Schedule, Win
 from intermit.verify.enclosure.stepping import Stepper, is_proved
 from intermit.verify.floor.certify import FloorOptions, certify_floor, comparison_system
 from intermit.verify.floor.comparison import BodyBounds
+from intermit.verify.floor.converged import ConvergedFilter
 from intermit.verify.floor.sets import InitialSet
 from problems import ADAPTIVE, CONVERGED_FILTER_FLOOR, J1, PERSISTENCE, paper_schedule
 from scipy.integrate import solve_ivp
@@ -133,3 +134,27 @@ def test_endless_periods_of_very_many_windows_are_cut_not_chewed():
     floor = certify_floor(PERSISTENCE, BOUNDS, schedule, EXAMPLE)
     assert floor.horizon == 400
     assert floor.stuck is None
+
+
+@pytest.mark.parametrize(("law", "gap"), [(PERSISTENCE, 16), (ADAPTIVE, 12), (ADAPTIVE, 40)])
+def test_a_filter_emptied_by_a_long_gap_keeps_its_floor(law, gap):
+    """Over lambda t = 40 R falls to 1e-18 of what a window brings: slack must be of its size."""
+    schedule = build_schedule([Window(F(0), F(4))], Hermite(), period=F(4 + gap))
+    start = InitialSet.from_bounds(BOUNDS, max_angle_deg=F(60), max_weighted_rate=F("0.02"))
+    options = FloorOptions(max_bins=4)
+    floor = certify_floor(replace(law, lambda_=F(1)), BOUNDS, schedule, start, options=options)
+    assert floor.horizon is None
+    converged = ConvergedFilter(schedule, F(1)).floor()
+    assert 0.97 * converged.low <= floor.value <= converged.high
+
+
+@pytest.mark.parametrize("law", [PERSISTENCE, ADAPTIVE])
+def test_rates_too_small_to_matter_do_not_stop_the_proof(law):
+    """A rate of 1e-12 moves the angle by less than its rounding, and still has to be bounded."""
+    values = []
+    for rate in (F(0), F(1, 10**12), F(1, 10**9)):
+        start = InitialSet.from_bounds(BOUNDS, max_angle_deg=F(120), max_weighted_rate=rate)
+        floor = certify_floor(law, BOUNDS, paper_schedule(), start, options=FloorOptions(max_bins=4))
+        assert floor.horizon is None
+        values.append(floor.value)
+    assert values[0] * (1 - 1e-4) <= values[2] <= values[1] <= values[0]
