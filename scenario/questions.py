@@ -14,6 +14,9 @@ Norm = Literal["component", "euclidean"]
 Profile = Literal["window", "gain"]
 Interval = tuple[Exact, Exact]
 
+MOST_SAMPLES = 2**30
+"""Distinct points of the Sobol sequence that is drawn from."""
+
 
 class CheckTable(Table):
     """[check]: which claims count, and how hard to look for counterexamples.
@@ -30,6 +33,13 @@ class CheckTable(Table):
     rate: Positive = Fraction(2)
     gain: Positive = Fraction(10)
     pe_window: Positive | None = None
+
+    @field_validator("samples")
+    @classmethod
+    def _distinct(cls, value: int) -> int:
+        if value > MOST_SAMPLES:
+            raise ValueError(f"expected at most {MOST_SAMPLES} (distinct points), received {value}")
+        return value
 
 
 class OptimumTable(Table):

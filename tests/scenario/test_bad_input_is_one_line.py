@@ -165,6 +165,10 @@ BAD_TABLES = {
         {"law": 'type = "persistence-filter"\nlambda = true\nR0 = 1'},
         "scenario.toml: law[1].lambda: expected a number, received true",
     ),
+    "more samples than there are points": (
+        {"check": "samples = 1073741825"},
+        "scenario.toml: check.samples: expected at most 1073741824 (distinct points), received 1073741825",
+    ),
     "an unknown key": (
         {"spacecraft": INERTIA.format(3, 3, 2) + "\ninertai = 3"},
         "scenario.toml: spacecraft.inertai: unknown key (did you mean 'inertia'?)",
