@@ -17,6 +17,10 @@ def run(
     output: Annotated[
         Path, typer.Option("--output", "-o", metavar="FILE", help="Certificate file to write (JSON).")
     ],
+    bound: Annotated[
+        bool,
+        typer.Option("--bound/--no-bound", help="Certify the lower bound of the least peak, with [optimum]."),
+    ] = True,
     debug: Debug = False,
 ) -> int:
     """Write the certificates of everything about a scenario that could be proved.
@@ -33,7 +37,7 @@ def run(
     began = perf_counter()
     loaded = load_scenario(scenario)
     with progress(loaded.name) as step:
-        result = certify(loaded, step)
+        result = certify(loaded, step, bound=bound)
     if not result.certificates:
         note("nothing could be certified: no file written")
         return ExitCode.UNDECIDED

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from time import perf_counter
 from typing import Annotated, Literal, get_args
 
@@ -34,6 +35,10 @@ def run(
     least_impulse: Annotated[
         bool, typer.Option("--least-impulse", help="Find the least impulse within the torque limit too.")
     ] = False,
+    certificate: Annotated[
+        Path | None,
+        typer.Option("--certificate", metavar="FILE", help="Write the bounds' certificates, for recheck."),
+    ] = None,
     debug: Debug = False,
 ) -> int:
     """Find the least peak torque any controller could do with through the windows."""
@@ -63,6 +68,20 @@ def run(
     with progress(loaded.name) as step:
         study = run_optimum(loaded, options, step)
     print_optimum(output(), study)
+    if certificate is not None:
+        from ..study.lower_bounds import bound_claim
+        from ..verify.certificates import certificate_text
+        from ..verify.lyapunov import certificates_of
+
+        claims = [bound_claim(o.problem, o.bound) for o in study.optima if o.bound is not None]
+        held = certificates_of(claims)
+        for claim in claims:
+            note(f"{claim.verdict.value} {claim.title}")
+        if held:
+            certificate.write_text(certificate_text(held), encoding="utf-8")
+            note(f"{len(held)} certificates in {certificate}: intermit recheck {certificate} proves them anew")
+        else:
+            note("no bound could be certified: no file written")
     if json is not None:
         from ..reports.record import write_record_to
         from ..study.optimum_record import optimum_record

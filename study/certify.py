@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any, final
@@ -26,6 +26,7 @@ from ..verify.zero_runs import default_length
 from .case import decided_claims
 from .check import scenario_claims
 from .floor import floor_question
+from .lower_bounds import asks_for_optimum, own_bound_claim, transfers_data
 from .run import Seen
 
 Progress = Callable[[str, float], None]
@@ -51,8 +52,11 @@ class Certification:
         return certificate_text(self.certificates)
 
 
-def certify(scenario: Scenario, progress: Progress) -> Certification:
-    """Decide the claims of a scenario by exact means and collect their certificates."""
+def certify(scenario: Scenario, progress: Progress, *, bound: bool = True) -> Certification:
+    """Decide the claims of a scenario by exact means and collect their certificates.
+
+    With `bound`, a scenario with an [optimum] table gets the lower bound of its least peak too.
+    """
     claims = [("schedule", _certified(claim, scenario)) for claim in scenario_claims(scenario)]
     for i, choice in enumerate(scenario.laws):
         progress(choice.label, i / len(scenario.laws))
@@ -60,6 +64,9 @@ def certify(scenario: Scenario, progress: Progress) -> Certification:
         claims += [
             (choice.label, _certified(claim, scenario, law)) for claim in decided_claims(scenario, law)
         ]
+    if bound and asks_for_optimum(scenario):
+        progress("lower bound", 1.0)
+        claims.append(("optimum", own_bound_claim(scenario)))
     return Certification(tuple(claims), certificates_of(claim for _, claim in claims))
 
 
@@ -90,9 +97,11 @@ def differences(text: str, scenario: Scenario) -> tuple[str, ...]:
     Every part of the file must agree with one law of the scenario in everything it says. A law is
     compared as polynomials, so that the order of its instructions does not matter.
     """
-    known = list(_scenario_data(scenario))
+    parts = json.loads(text)["parts"]
+    transfers = transfers_data(scenario) if any("transfer" in part["data"] for part in parts) else []
+    known = list(_scenario_data(scenario, transfers))
     found: list[str] = []
-    for number, part in enumerate(json.loads(text)["parts"], start=1):
+    for number, part in enumerate(parts, start=1):
         gaps = [tuple(_unequal(part["data"], data)) for data in known]
         if not any(not gap for gap in gaps):
             least = min(gaps, key=len, default=())
@@ -100,11 +109,12 @@ def differences(text: str, scenario: Scenario) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _scenario_data(scenario: Scenario) -> Iterator[Mapping[str, Any]]:
+def _scenario_data(scenario: Scenario, transfers: Sequence[Mapping[str, Any]]) -> Iterator[Mapping[str, Any]]:
     """Everything certificates may say of a scenario, for each of its laws, as they say it."""
     shared = {"schedule": schedule_data(scenario.schedule)} | windows_data(scenario.schedule)
     if scenario.linear is not None:
         shared |= plant_data(scenario.linear)
+    shared |= {"inertia": scenario.body.exact_inertia, "transfers": transfers}
     if not scenario.laws:
         yield shared
     for choice in scenario.laws:
@@ -123,12 +133,21 @@ def _unequal(stated: Mapping[str, Any], expected: Mapping[str, Any]) -> Iterator
     """Names of the entries that the scenario does not confirm."""
     own = expected.get("user_law", False)
     text = as_text({key: value for key, value in expected.items() if key != "user_law"})
-    if ("inertia_tolerance" in text) and "inertia" in stated and "inertia_tolerance" not in stated:
+    bound_alone = stated.keys() == {"inertia", "transfer"}  # a bound speaks of the inertia as stated
+    if (
+        "inertia_tolerance" in text
+        and "inertia_tolerance" not in stated
+        and "inertia" in stated
+        and not bound_alone
+    ):
         yield "inertia_tolerance (the scenario has one, the certificate none)"
     for key, value in stated.items():
         if key == "law":
             if not _same_law(value, text["law"], by_name=not own):
                 yield "law"
+        elif key == "transfer":
+            if not any(_same(value, transfer) for transfer in text["transfers"]):
+                yield "transfer"
         elif key == "parameters":
             for name, number in value.items():
                 if not _same(number, text["parameters"].get(name)):

@@ -78,7 +78,7 @@ def optimum_entry(study: OptimumStudy, optimum: Optimum) -> tuple[dict[str, Any]
             {"label": f"convex or Newton programs, {optimum.key}", "count": answer.iterations},
             {"label": f"starts, {optimum.key}", "count": len(answer.search.starts)},
         ],
-        "notes": notes(optimum),
+        "notes": notes(study.scenario.path.name, optimum),
     }
     if optimum.bound is not None:
         bound = optimum.bound
@@ -156,7 +156,16 @@ def residuals(optimum: Optimum) -> list[dict[str, Any]]:
     ]
 
 
-def notes(optimum: Optimum) -> list[str]:
+def recheck_words(name: str, optimum: Optimum) -> str:
+    """How the bound can be proved anew, in words."""
+    assert optimum.bound is not None
+    return (
+        f"To prove the bound anew: intermit optimum {name} --norm {optimum.key} --certificate FILE, then "
+        "intermit recheck FILE, or the stand-alone checker: python -I -S checker.py FILE."
+    )
+
+
+def notes(name: str, optimum: Optimum) -> list[str]:
     """Standing, reasons and limits in words."""
     answer = optimum.answer
     said = [f"{answer.standing.value}: solved by the {answer.solver} on {answer.cells} cells."]
@@ -169,6 +178,8 @@ def notes(optimum: Optimum) -> list[str]:
     if optimum.least_impulse is not None:
         words = least_impulse_words(optimum.least_impulse)
         said.append(words[0].upper() + words[1:] + ".")
+    if optimum.bound is not None:
+        said.append(recheck_words(name, optimum))
     if answer.history is not None:
         said.append("The best of the starts: an upper bound on the least peak, local optimality checked.")
     return said

@@ -11,11 +11,12 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
-from ...verify.certificates import Certificate
+from ...verify import checker
+from ...verify.certificates import Certificate, certificate_text
 from ..norms import Euclidean, LargestComponent, Norm, ThrusterAxes
 from ..problem import TransferProblem
 from .argument import Argument, ComponentsArgument, MomentumArgument, PathArgument
-from .bound import NamedBound, start_momentum
+from .bound import LowerBound, NamedBound, start_momentum
 from .chart import square_root
 from .gauge import GaugeSet, torque_vertices
 from .momentum_sets import MomentumSet, greatest_inertia_above, least_inertia_below
@@ -52,6 +53,17 @@ def peak_certificate(problem: TransferProblem, bound: NamedBound) -> Certificate
             witness |= _component_witness(argument)
     peak = Fraction(rounded_down(min(exact, bound.exact)))
     return Certificate(KIND, transfer_data(problem), {"peak": peak}, witness) if peak > 0 else None
+
+
+def largest_certificate(problem: TransferProblem, bound: LowerBound) -> tuple[NamedBound, Certificate] | None:
+    """Return the largest bound whose certificate the stand-alone checker confirms; None if all are 0."""
+    for named in bound.all:
+        certificate = peak_certificate(problem, named)
+        if certificate is None:
+            continue
+        if all(finding.valid for finding in checker.check_text(certificate_text([certificate]))):
+            return named, certificate
+    return None
 
 
 def transfer_data(problem: TransferProblem) -> dict[str, Any]:
