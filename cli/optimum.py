@@ -79,7 +79,9 @@ def run(
             note(f"{claim.verdict.value} {claim.title}")
         if held:
             certificate.write_text(certificate_text(held), encoding="utf-8")
-            note(f"{len(held)} certificates in {certificate}: intermit recheck {certificate} proves them anew")
+            note(
+                f"{len(held)} certificates in {certificate}: intermit recheck {certificate} proves them anew"
+            )
         else:
             note("no bound could be certified: no file written")
     if json is not None:
