@@ -7,7 +7,15 @@ from typing import TYPE_CHECKING
 from ..optim.peak import Standing
 from ..reports.numbers import write
 from ..reports.parts import quantity
-from ..study.optimum_record import least_impulse_words, least_time_words, residuals, terminal_words
+from ..study.optimum_record import (
+    impulse_words,
+    least_impulse_words,
+    least_time_words,
+    residuals,
+    start_words,
+    switch_words,
+    terminal_words,
+)
 from .claim_tables import plain_table
 
 if TYPE_CHECKING:
@@ -28,8 +36,8 @@ def print_optimum(console: Console, study: OptimumStudy) -> None:
     console.print(study.sentence)
     gain = scenario.optimum.profile == "gain"
     console.print(
-        f"From {scenario.initial.angle_deg:.6g} deg to {terminal_words(study.optima[0])} at tf = "
-        f"{float(first.horizon):g} s, "
+        f"Start: {start_words(study.optima[0])}. End: {terminal_words(study.optima[0])}, by tf = "
+        f"{float(first.horizon):g} s; "
         + ("torque up to p g(t)." if gain else "full torque inside the windows.")
     )
     console.print()
@@ -48,6 +56,9 @@ def print_optimum(console: Console, study: OptimumStudy) -> None:
     console.print(table)
     for optimum in study.optima:
         _details(console, optimum)
+        asked = study.options.least_time or study.options.least_impulse
+        if asked and optimum.limit is None:
+            console.print("  no limit is given for this norm: nothing to answer within it")
 
 
 def _bound(optimum: Optimum) -> str:
@@ -95,6 +106,8 @@ def _details(console: Console, optimum: Optimum) -> None:
     elif optimum.within_limit is not None:
         unit = optimum.problem.norm.unit
         word = "is enough" if optimum.within_limit else "was not met by any transfer found"
+        if not optimum.within_limit and optimum.bound is not None:
+            word += ", though the certified bound does not rule it out"
         console.print(f"  limit {optimum.limit:g} {unit} {word}")
     if optimum.least_time is not None:
         console.print(f"  {least_time_words(optimum.least_time)}")
@@ -103,16 +116,11 @@ def _details(console: Console, optimum: Optimum) -> None:
     if optimum.bound is not None:
         console.print(f"  certified bound from: {optimum.bound.name}")
     if answer.history is not None:
-        impulse = f"{answer.impulse:.6g} {optimum.problem.norm.unit} s"
-        console.print(f"  impulse {impulse}; {answer.cells} cells, {answer.solver}")
+        console.print(f"  impulse {impulse_words(optimum)}; {answer.cells} cells, {answer.solver}")
     for residual in residuals(optimum):
         console.print(f"  {residual['label']}: {write(residual, most=2).ascii}")
     if answer.switching is not None and answer.switching.switch_times:
         times = answer.switching.switch_times
-        shown = ", ".join(_switch(t, j) for t, j in times[:MOST_SWITCHES])
+        shown = ", ".join(switch_words(optimum, t, j) for t, j in times[:MOST_SWITCHES])
         more = f", and {len(times) - MOST_SWITCHES} more" if len(times) > MOST_SWITCHES else ""
         console.print(f"  switches: {shown}{more}")
-
-
-def _switch(time: float, component: int) -> str:
-    return f"{time:.4f} s" if component < 0 else f"{time:.4f} s (control {component + 1})"

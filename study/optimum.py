@@ -162,7 +162,8 @@ def run_optimum(
         spent = None
         if options.least_impulse and limit is not None and hopeless is None:
             tell(f"least impulse, {key}", (i + 0.8) / len(keys))
-            spent = minimum_impulse(problem, limit, search=search)
+            few = replace(search, starts=min(2, search.starts))
+            spent = minimum_impulse(problem, limit, search=few)
         optima.append(Optimum(key, problem, answer, limit, hopeless, bound, least, spent))
     tell("done", 1.0)
     return OptimumStudy(scenario, options, tuple(optima))

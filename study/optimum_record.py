@@ -101,7 +101,7 @@ def least_time_words(least: LeastTime) -> str:
         return f"no transfer within {limit} was found by {float(least.earlier):g} s"
     return (
         f"least time within {limit}: {float(least.time):.6g} s "
-        f"(none found by {float(least.earlier):.6g} s; {least.solves} least peaks solved)"
+        f"(none found {float(least.time - least.earlier):.1g} s sooner; {least.solves} least peaks solved)"
     )
 
 
@@ -112,7 +112,7 @@ def least_impulse_words(least: LeastImpulseFound) -> str:
         return f"no transfer within {least.limit:g} {unit} was found, so none of least impulse"
     said = (
         f"least impulse within {least.limit:g} {unit}: {least.impulse:.6g} {unit} s "
-        f"({answer.standing.value}; missed at the end by {answer.flown.terminal_excess:.1e} rad, "
+        f"({answer.standing.value}; end missed by {answer.flown.terminal_excess:.1g} rad, "
         f"optimality gap {answer.optimality_gap:.1e}, finer cells gain {answer.mesh_gap:.1e})"
         if answer.flown is not None
         else ""
@@ -122,6 +122,28 @@ def least_impulse_words(least: LeastImpulseFound) -> str:
 
 def _lower(name: str, value: float, unit: str) -> dict[str, Any]:
     return parts.quantity(name, value, unit=unit, rigorous=True, side="lower")
+
+
+def start_words(optimum: Optimum) -> str:
+    """The start in words: angle to the target, and how it turns."""
+    problem = optimum.problem
+    rate = float(np.linalg.norm(problem.start_rate))
+    turning = f"turning at {rate:.4g} rad/s" if rate > 0 else "at rest"
+    return f"{np.degrees(problem.angle):.6g} deg from the target, {turning}"
+
+
+def impulse_words(optimum: Optimum) -> str:
+    """The impulse of the least-peak history, and what it is the integral of."""
+    problem, kind = optimum.problem, {"component": " (axes added up)", "thrusters": " (forces added up)"}
+    return f"{optimum.answer.impulse:.6g} {problem.norm.unit} s{kind.get(optimum.key, '')}"
+
+
+def switch_words(optimum: Optimum, time: float, component: int) -> str:
+    """A switch: when, and which axis or thruster."""
+    if component < 0:
+        return f"{time:.4f} s"
+    which = f"thruster {component + 1}" if optimum.key == "thrusters" else "xyz"[component]
+    return f"{time:.4f} s ({which})"
 
 
 def terminal_words(optimum: Optimum) -> str:
