@@ -44,20 +44,22 @@ class FloorOptions:
     slack : relative slack of the inequalities, traded against the number of steps
     max_bins : bins of the initial set (only the adaptive law needs more than one)
     max_periods : periods after which no tail is looked for any more
+    settling_moves : how often the bin that settles last is refined (see `sooner`)
     """
 
     degree: int = 9
     slack: float = 2e-4
     max_bins: int = 24
     max_periods: int = 40
+    settling_moves: int = 12
 
     def __post_init__(self) -> None:
         if not 2 <= self.degree <= 12:
             raise ValueError(f"degree must lie between 2 and 12, received {self.degree}")
         if not 0 < self.slack < 0.1:
             raise ValueError(f"slack must lie between 0 and 0.1, received {self.slack}")
-        if self.max_bins < 1 or self.max_periods < 1:
-            raise ValueError("max_bins and max_periods must be at least 1")
+        if self.max_bins < 1 or self.max_periods < 1 or self.settling_moves < 0:
+            raise ValueError("max_bins and max_periods must be at least 1, settling_moves at least 0")
 
 
 @final
@@ -163,7 +165,7 @@ def certify_floor(
         return None
     if horizon is None and schedule.period is None:
         horizon = schedule.end
-    run = _Run(system, schedule, horizon, options)
+    run = FloorProof(system, schedule, horizon, options)
     if isinstance(system, PersistenceSystem):
         witnesses: tuple[Witness, ...] = (run.complete(Witness(system, initial, ())),)
     else:
@@ -186,7 +188,9 @@ def _first_jump(schedule: Schedule) -> Fraction | None:
 
 @final
 @dataclass(frozen=True)
-class _Run:
+class FloorProof:
+    """How witnesses are made for one system and schedule; step sizes carry over from one to the next."""
+
     system: LawComparison
     schedule: Schedule
     horizon: Fraction | None
@@ -203,8 +207,11 @@ class _Run:
             self._known[:] = [stepper]
         return stepper
 
-    def complete(self, early: Witness) -> Witness:
-        """Go on from an early witness to the horizon, or to a tail as soon as that costs nothing."""
+    def complete(self, early: Witness, not_before: Fraction = Fraction(0)) -> Witness:
+        """Go on from an early witness to the horizon, or to a tail as soon as that costs nothing.
+
+        `not_before` is the earliest start of the tail, s: a later one decays faster.
+        """
         if early.stuck is not None:
             return early
         steps, least = list(early.steps), early.floor
@@ -216,7 +223,7 @@ class _Run:
                 steps += stepper.run(self.schedule, start, stop, values)
             except CannotProceedError as stuck:
                 return Witness(self.system, early.initial, (*steps, *stuck.steps), stuck=stuck.time)
-            if period is None or stop % period != 0:
+            if period is None or stop % period != 0 or stop < not_before:
                 continue
             least = min(least, *(min(s.controls["r"]) for s in steps if s.start >= start))
             state = steps[-1].end_state()
@@ -259,8 +266,8 @@ class _Run:
 
     def binned(self, initial: InitialSet, bounds: BodyBounds) -> tuple[Witness, ...]:
         """Halve the worst bin again and again: most by the floor of the first windows, then by all."""
-        stop = self._early_end()
-        weight = bounds.coupling * float(stop) / 4
+        stop = self.early_end
+        weight = self.weight(bounds)
         most = 1 + 3 * (self._max_bins - 1) // 4
         first = self._halve([self.early(initial, stop)], weight, most, lambda b: self.early(b, stop))
         return tuple(
@@ -297,7 +304,12 @@ class _Run:
                 heappush(heap, (_merit(witness), next(order), witness))
         return [w for _, _, w in sorted(heap)]
 
-    def _early_end(self) -> Fraction:
+    def weight(self, bounds: BodyBounds) -> float:
+        """Width of the angle that a width of the rate counts for when a bin is halved."""
+        return bounds.coupling * float(self.early_end) / 4
+
+    @cached_property
+    def early_end(self) -> Fraction:
         """End of the third window's rise: the least R is mostly seen by then."""
         span = self.schedule.end * (1 if self.schedule.period is None else 4)
         openings = [w.on for w in self.schedule.support_between(Fraction(0), span)][:3]

@@ -19,6 +19,7 @@ from typing import final
 import numpy as np
 from numpy.typing import NDArray
 
+from ...models.schedule import Schedule
 from ..enclosure.balls import sqrt_below
 from .certify import Floor
 from .torque_bound import OUTWARD, greatest_bv
@@ -77,7 +78,7 @@ def analyse_convergence(floor: Floor, *, attitude: float, rate: float) -> Conver
     tails = [w.tail for w in floor.witnesses]
     complete = [t for t in tails if t is not None]
     converges = len(complete) == len(tails)
-    times = [_settled(r, floor, attitude, rate) for r in reaches]
+    times = [_settled(r, floor.schedule, floor.horizon, attitude, rate) for r in reaches]
     return Convergence(
         converges=converges,
         ratio=max((max(t.ratios.values(), default=0.0) for t in complete), default=1.0),
@@ -86,6 +87,12 @@ def analyse_convergence(floor: Floor, *, attitude: float, rate: float) -> Conver
         largest_angle=_angle(gaps),
         largest_rate=max(r.rate for row in reaches for r in row),
     )
+
+
+def settling(witness: Witness, floor: Floor, *, attitude: float, rate: float) -> float:
+    """Time after which one bin of a floor for all time is within the tolerances, s; inf where unknown."""
+    found = _settled(list(_reaches(floor, witness)), floor.schedule, None, attitude, rate)
+    return inf if found is None or witness.tail is None else found
 
 
 def _angle(gap: float) -> float:
@@ -112,9 +119,11 @@ def _reach(box: Box, root: float, scale: float | None) -> Reach:
     return Reach(box.start, box.stop, n, rate, scale)
 
 
-def _settled(reaches: list[Reach], floor: Floor, attitude: float, rate: float) -> float | None:
+def _settled(
+    reaches: list[Reach], schedule: Schedule, horizon: Fraction | None, attitude: float, rate: float
+) -> float | None:
     """Time after which every box is within the tolerances; None if the covered time ends outside."""
-    period = float(floor.schedule.period) if floor.schedule.period is not None else inf
+    period = float(schedule.period) if schedule.period is not None else inf
     last = 0.0
     for reach in reaches:
         excess = max(reach.attitude / attitude, reach.rate / rate) * OUTWARD
@@ -127,7 +136,7 @@ def _settled(reaches: list[Reach], floor: Floor, attitude: float, rate: float) -
             last = max(last, reach.stop + (periods - 1) * period)
         else:
             last = max(last, reach.stop)
-    if floor.horizon is not None and last >= float(floor.horizon) * (1 - 1e-12):
+    if horizon is not None and last >= float(horizon) * (1 - 1e-12):
         return None
     return nextafter(last * OUTWARD, inf)
 

@@ -14,6 +14,7 @@ from .claims import FloorFacts, convergence_claim, floor_claim, reaches_far_enou
 from .converged import ConvergedFilter, ConvergedFloor
 from .convergence import Convergence, analyse_convergence
 from .question import FloorQuestion
+from .sooner import settle_sooner
 from .torque_bound import TorqueBound, torque_bound
 from .worst_found import WorstFound, find_worst
 
@@ -47,6 +48,9 @@ def answer(question: FloorQuestion) -> FloorAnswer:
         last = q.schedule.windows[:LARGEST_PERIOD][-1].off
         horizon = min(q.horizon, q.schedule.end) if q.horizon is not None else min(last, q.schedule.end)
     floor = certify_floor(q.law, q.bounds, q.schedule, q.initial, horizon=horizon, options=q.options)
+    tolerances = {"attitude": float(q.attitude), "rate": float(q.rate)}
+    if floor is not None:
+        floor = settle_sooner(floor, **tolerances, options=q.options)
     decay = q.law.parameters.get("lambda")
     has_filter = any(s.name == "R" for s in q.law.controller_states)
     converged = None
@@ -62,7 +66,7 @@ def answer(question: FloorQuestion) -> FloorAnswer:
     torque = found = None
     if floor is not None and floor.steps:
         torque = torque_bound(floor)
-        found = analyse_convergence(floor, attitude=float(q.attitude), rate=float(q.rate))
+        found = analyse_convergence(floor, **tolerances)
     certificate = None
     if floor is not None and reaches_far_enough(floor):
         certificate = floor_certificate(q, floor, convergence=found, torque=torque)
