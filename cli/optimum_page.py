@@ -105,9 +105,10 @@ def _details(console: Console, optimum: Optimum) -> None:
         )
     elif optimum.within_limit is not None:
         unit = optimum.problem.norm.unit
-        word = "is enough" if optimum.within_limit else "was not met by any transfer found"
-        if not optimum.within_limit and optimum.bound is not None:
-            word += ", though the certified bound does not rule it out"
+        word = "is enough"
+        if not optimum.within_limit:
+            word = f"was not met by any transfer found: the least found needs {answer.peak:.4g} {unit}"
+            word += "" if optimum.bound is None else ", the certified bound does not rule out less"
         console.print(f"  limit {optimum.limit:g} {unit} {word}")
     if optimum.least_time is not None:
         console.print(f"  {least_time_words(optimum.least_time)}")
@@ -116,7 +117,8 @@ def _details(console: Console, optimum: Optimum) -> None:
     if optimum.bound is not None:
         console.print(f"  certified bound from: {optimum.bound.name}")
     if answer.history is not None:
-        console.print(f"  impulse {impulse_words(optimum)}; {answer.cells} cells, {answer.solver}")
+        how = f"{answer.cells} cells, {answer.solver}" if answer.peak > 0 else "no torque is needed"
+        console.print(f"  impulse {impulse_words(optimum)}; {how}")
     for residual in residuals(optimum):
         console.print(f"  {residual['label']}: {write(residual, most=2).ascii}")
     if answer.switching is not None and answer.switching.switch_times:

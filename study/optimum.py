@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -95,12 +96,28 @@ class Optimum:
         return None if self.limit is None or self.answer.history is None else self.answer.peak <= self.limit
 
     @property
+    def _limit_is_ruled_out(self) -> bool:
+        return self.limit_is_refuted or (self.hopeless is not None and self.hopeless.certain)
+
+    @property
+    def outcome(self) -> str:
+        """What became of it, in a few words: the standing, and the limit if there is one."""
+        from ..optim.peak import Standing
+
+        if self.answer.standing is Standing.IMPOSSIBLE:
+            return "impossible"
+        if self._limit_is_ruled_out:
+            return "impossible within its limit"
+        if self.answer.standing is Standing.UNDECIDED:
+            return "left open"
+        return "found and checked" + (" but above its limit" if self.within_limit is False else "")
+
+    @property
     def exit_code(self) -> int:
         """0 solved (and within the limit), 1 impossible, 3 left open."""
         from ..optim.peak import Standing
 
-        ruled_out = self.hopeless is not None or self.limit_is_refuted
-        if self.answer.standing is Standing.IMPOSSIBLE or ruled_out:
+        if self.answer.standing is Standing.IMPOSSIBLE or self._limit_is_ruled_out:
             return 1
         if self.answer.standing is Standing.UNDECIDED or self.within_limit is False:
             return 3
@@ -125,10 +142,9 @@ class OptimumStudy:
     @property
     def sentence(self) -> str:
         """The outcome in one sentence."""
-        words = {0: "found and checked", 1: "impossible", 3: "left open"}
-        counts = {code: sum(o.exit_code == code for o in self.optima) for code in words}
-        parts = [f"{n} {words[code]}" for code, n in counts.items() if n]
-        return f"Of {len(self.optima)} least peaks: {', '.join(parts)}."
+        counts = Counter(optimum.outcome for optimum in self.optima)
+        parts = [f"{n} {words}" for words, n in counts.items()]
+        return f"Of {len(self.optima)} least peaks: {'; '.join(parts)}."
 
 
 def run_optimum(

@@ -113,7 +113,7 @@ def least_impulse_words(least: LeastImpulseFound) -> str:
     said = (
         f"least impulse within {least.limit:g} {unit}: {least.impulse:.6g} {unit} s "
         f"({answer.standing.value}; end missed by {answer.flown.terminal_excess:.1g} rad, "
-        f"optimality gap {answer.optimality_gap:.1e}, finer cells gain {answer.mesh_gap:.1e})"
+        f"optimality gap {answer.optimality_gap:.2g}, finer cells gain {answer.mesh_gap:.2g})"
         if answer.flown is not None
         else ""
     )

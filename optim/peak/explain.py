@@ -23,11 +23,14 @@ class Explanation:
     ----------
     impossible : bool
         True if no torque whatever makes the transfer; False if only the stated limit rules it out.
+    certain : bool
+        False if it is a warning and no argument: the transfer may exist all the same.
     """
 
     reason: str
     next_step: str
     impossible: bool
+    certain: bool = True
 
 
 def open_time(problem: TransferProblem) -> Fraction:
@@ -115,12 +118,13 @@ def explain(problem: TransferProblem, limit: float | None = None) -> Explanation
     norm = problem.norm
     if isinstance(norm, ThrusterAxes) and not norm.spans_all_directions:
         missing = norm.facets[0][int(np.argmin(norm.facets[1]))]
-        axis = ", ".join(f"{x:+.3f}" for x in missing)
+        axis = ", ".join(f"{round(float(x), 3) + 0.0:.3f}" for x in missing)
         if problem.starts_at_rest:
             return Explanation(
                 f"the one-sided thrusters cannot push along ({axis}) at all",
                 "add a thruster that pushes that way, so that every torque can be made",
                 impossible=False,
+                certain=False,
             )
     if limit is None:
         return None

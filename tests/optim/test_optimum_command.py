@@ -122,6 +122,20 @@ def test_a_question_within_a_limit_needs_a_limit(tmp_path, capsys, question):
     assert "optimum.torque_limit" in capsys.readouterr().err
 
 
+def test_the_sentence_tells_a_limit_not_met_from_a_peak_not_found(tmp_path, capsys):
+    path = scenario(tmp_path, more="torque_limit = 0.06\nstarts = 1")
+    assert run(["optimum", str(path), "--norm", "component", "--no-bound"]) == 3
+    said = capsys.readouterr().out
+    assert "1 found and checked but above its limit." in said
+    assert "the least found needs 0.0" in said
+    path = scenario(tmp_path, more="torque_limit = 0.001\nstarts = 1")
+    assert run(["optimum", str(path), "--no-bound"]) == 1
+    assert "1 impossible within its limit; 1 found and checked." in capsys.readouterr().out
+    one_way = scenario(tmp_path, more="thrusters = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]\nstarts = 1")
+    assert run(["optimum", str(one_way), "--no-bound"]) == 3
+    assert "1 left open." in capsys.readouterr().out
+
+
 def test_thrusters_give_a_force(tmp_path, capsys):
     axes = "thrusters = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]\nstarts = 1"
     assert run(["optimum", str(scenario(tmp_path, more=axes)), "--no-bound"]) == 0
