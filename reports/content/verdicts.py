@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from ..numbers import write
 from ..record import Record
 from .blocks import Block, Card, Cards, Chapter, ClaimDetails, Group, Text, Verdicts
-from .wording import plural
+from .wording import plural, short
 
 VERDICTS = ("PROVED", "REFUTED", "UNDECIDED")
 FLOORS = ("certified_floor", "filter_floor")
@@ -50,6 +51,15 @@ COLLECTIONS = {
 }
 
 
+def refutation(claim: Mapping[str, Any]) -> str:
+    """Say in one line what refutes a claim, and by how much; empty if nothing does."""
+    witness = claim.get("witness")
+    if not witness:
+        return ""
+    violation = witness["violation"]
+    return f"{witness['description']}: {violation.get('label') or violation['name']} {write(violation).text}"
+
+
 def claim_numbers(claim: Mapping[str, Any]) -> tuple[Mapping[str, Any], ...]:
     """Numbers the verdict table shows: the margins, or without any the first rigorous quantity."""
     rigorous = [q for q in claim["quantities"] if q.get("rigorous")][:1]
@@ -75,15 +85,14 @@ def answer(record: Record) -> str:
 
 def verdict_chapter(record: Record) -> Chapter:
     """Cards, then the table."""
-    blocks: list[Block] = []
+    found = groups(record)
+    said = record.document.get("outcome", {}).get("sentence", "")
+    deciding = counted(tuple(c for g in found for c in g.claims))
+    sentences = _not_proved(found) if deciding else iter([said] if said else [])
+    blocks: list[Block] = [Text(sentence) for sentence in sentences]
     cards = tuple(_card(case, record) for case in record.sections.get("cases", ()))
-    outcome = record.document.get("outcome", {})
-    sentence = outcome.get("sentence", "")
-    if sentence and outcome.get("exit_code"):  # where all is proved it would only repeat the heading
-        blocks.append(Text(sentence))
     if cards:
         blocks.append(Cards(cards))
-    found = groups(record)
     others = tuple(c for g in found for _, c in g.entries(counted=False))
     if len(others) < sum(len(g.claims) for g in found):
         blocks.append(Verdicts(found))
@@ -91,6 +100,19 @@ def verdict_chapter(record: Record) -> Chapter:
         blocks.append(Verdicts(found, counted=False, summary=_others(others)))
     blocks.extend(Text(note, "warning") for note in _warnings(record.sections))
     return Chapter("verdicts", "Verdicts", tuple(blocks))
+
+
+def _not_proved(found: tuple[Group, ...]) -> Iterator[str]:
+    """Name the counted claims that fail, the refuted first: what a reader asks next."""
+    for verdict in ("REFUTED", "UNDECIDED"):
+        by_title: dict[str, list[str]] = {}
+        for group in found:
+            for _, claim in group.entries(counted=True):
+                if claim["verdict"] == verdict:
+                    by_title.setdefault(short(claim["title"]), []).append(short(group.label))
+        if by_title:
+            named = "; ".join(f"{title} ({', '.join(labels)})" for title, labels in by_title.items())
+            yield f"{verdict}: {named}."
 
 
 def _others(claims: tuple[Mapping[str, Any], ...]) -> str:

@@ -16,7 +16,7 @@ from ..content.blocks import Cell, Chapter, Chart, Replay, charts_of
 from ..content.budget import thin
 from ..content.heading import Heading
 from ..content.typeset import equation_svgs
-from ..content.verdicts import claim_numbers
+from ..content.verdicts import claim_numbers, refutation
 from ..content.wording import LONGEST_LABEL, short, visible
 from ..numbers import number, unit_text, write
 from ..values import thaw
@@ -92,6 +92,7 @@ def _environment() -> Any:
         cell=html_cell,
         cut=cut_names,
         numbers=claim_numbers,
+        refutation=refutation,
         number=html_number,
         unit=unit_text,
         short=short,

@@ -25,7 +25,7 @@ from ..content.drawn import LEGEND_LONGEST
 from ..content.names import FullNames
 from ..content.printable import directed, printable
 from ..content.studies import values_text
-from ..content.verdicts import claim_numbers
+from ..content.verdicts import claim_numbers, refutation
 from ..numbers import number, unit_text, write
 from ..values import thaw
 
@@ -125,7 +125,7 @@ def _claim(claim: Mapping[str, Any], names: FullNames) -> dict[str, Any]:
 
     why = claim.get("reason", "") if claim["verdict"] == "UNDECIDED" else ""
     if claim.get("witness"):
-        why = f"refuted: {claim['witness']['description']}"
+        why = f"refuted: {refutation(claim)}"
     return {
         "title": brief(claim["title"]),
         "statement": brief(claim["statement"]),

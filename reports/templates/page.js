@@ -80,6 +80,24 @@
     })).then(function () { linking = false; }, function () { linking = false; });
   }
 
+  const HINT = "Keys: arrows left and right move, plus and minus zoom, zero shows all.";
+  function press(element, event) {
+    if (!element.dataset.drawn || event.altKey || event.ctrlKey || event.metaKey) return;
+    const range = element._fullLayout.xaxis.range, low = range[0], high = range[1], span = high - low;
+    const changes = { ArrowLeft: [-0.2, -0.2], ArrowRight: [0.2, 0.2], "+": [0.2, -0.2], "=": [0.2, -0.2], "-": [-1 / 3, 1 / 3] };
+    const change = changes[event.key];
+    if (event.key === "0") Plotly.relayout(element, { "xaxis.autorange": true });
+    else if (change) Plotly.relayout(element, { "xaxis.range[0]": low + change[0] * span, "xaxis.range[1]": high + change[1] * span });
+    else return;
+    event.preventDefault();
+  }
+  plots.forEach(function (e) {
+    e.tabIndex = 0;
+    e.setAttribute("aria-description", HINT);
+    e.title = HINT;
+    e.addEventListener("keydown", function (event) { if (event.target === e) press(e, event); });
+  });
+
   function redraw() {
     plots.filter(function (e) { return e.dataset.drawn; }).forEach(draw);
     document.dispatchEvent(new CustomEvent("themechange"));

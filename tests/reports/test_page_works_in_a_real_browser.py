@@ -106,6 +106,21 @@ def test_a_drag_zooms_its_figure_and_its_neighbour_and_a_double_click_returns(vi
     assert x_range(visit, "torque-2") == pytest.approx(before)
 
 
+def test_keys_zoom_move_and_reset_a_figure(visit: Visit) -> None:
+    plot(visit, "torque-1").focus()
+    before = x_range(visit, "torque-1")
+    for key in ("+", "+", "ArrowRight"):
+        visit.page.keyboard.press(key)
+        visit.page.wait_for_timeout(200)
+    after = x_range(visit, "torque-1")
+    assert after[1] - after[0] < 0.5 * (before[1] - before[0])
+    assert after[0] > before[0]
+    visit.page.keyboard.press("0")
+    visit.page.wait_for_timeout(200)
+    assert x_range(visit, "torque-1") == pytest.approx(before)
+    assert "zoom" in plot(visit, "torque-1").get_attribute("aria-description")
+
+
 def test_hover_shows_the_values(visit: Visit) -> None:
     box = plot(visit, "torque-2").locator(".nsewdrag").bounding_box()
     visit.page.mouse.move(box["x"] + 0.15 * box["width"], box["y"] + 70)
