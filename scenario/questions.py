@@ -122,5 +122,6 @@ class ReportTable(Table):
 
     audit: StrictBool = False
     front: tuple[Positive, ...] = ()
+    front_laws: tuple[Text, ...] = ()
     front_norm: Norm = "euclidean"
-    front_evaluations: Count = 1000
+    front_evaluations: Count = 300

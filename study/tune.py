@@ -55,20 +55,26 @@ def run_tuning(
 
 def run_front(
     scenario: Scenario, settles: Sequence[Fraction], *, norm: NormName | None = None,
-    evaluations: int | None = None, executor: Executor | None = None,
+    labels: Sequence[str] = (), evaluations: int | None = None, executor: Executor | None = None,
 ) -> Front:  # fmt: skip
-    """Tune every law for every settling time, beside the optimum and its certified bound.
+    """Tune the laws of these labels (all without any) for every settling time, beside what is possible.
 
     `norm` and `evaluations` come from the scenario's [tune] where they are not given.
+
+    Raises
+    ------
+    ScenarioError
+        If no law has such a label.
     """
+    choices = [scenario.law(label) for label in labels] or list(scenario.laws)
     return pareto_front(
-        {choice.label: choice.build() for choice in scenario.laws},
+        {choice.label: choice.build() for choice in choices},
         task_of(scenario),
         settles,
         norm=norm or scenario.tune.norm,
         method=_method(scenario, None, evaluations),
         certify={
-            c.label: found for c in scenario.laws if (found := conditions_on(scenario, c)) is not None
+            c.label: found for c in choices if (found := conditions_on(scenario, c)) is not None
         },
         executor=executor,
     )  # fmt: skip
@@ -178,7 +184,7 @@ def front_record(scenario: Scenario, front: Front) -> Record:
         parts.column("settle", "settled by", "s"),
         parts.column("bound", "certified bound", "N m"),
         parts.column("optimum", "optimum found", "N m"),
-        *(parts.column(f"law{i}", label, "N m") for i, label in enumerate(front.runs, start=1)),
+        *(parts.column(f"law{i}", f"{label}, tuned", "N m") for i, label in enumerate(front.runs, start=1)),
         *(parts.column(f"par{i}", f"parameters of {label}") for i, label in enumerate(front.runs, start=1)),
     ]
     rows = [_front_row(front, i) for i in range(len(settles))]
@@ -195,7 +201,7 @@ def front_record(scenario: Scenario, front: Front) -> Record:
         if found:
             x = arrays.put(f"front.law{number}.settle", [s for s, _ in found])
             y = arrays.put(f"front.law{number}.peak", [p for _, p in found])
-            lines.append(parts.series(label, x, y, style="line+points", role="law"))
+            lines.append(parts.series(f"{label}, tuned", x, y, style="line+points", role="law"))
     section = {
         "title": "Peak torque against settling time",
         "summary": "The optimum with its certified band, and the best each law reaches over its parameters.",
