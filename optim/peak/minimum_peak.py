@@ -73,7 +73,8 @@ def minimum_peak(
 
     Notes
     -----
-    The answer is a local optimum, the best of the starts: an upper bound on the least peak.
+    The answer is a local optimum, the best of the starts that could be checked: an upper bound on
+    the least peak. Where a start led lower without meeting every standard, the reason says so.
     """
     search, refinement = search or MultiStart(), refinement or Refinement()
     fast: LocalSolver = solver or SequentialConvex()
@@ -104,7 +105,18 @@ def minimum_peak(
     if first.standing is Standing.CHECKED:
         return first
     others = (finish(candidate) for candidate in candidates[1:])
-    return next((other for other in others if other.standing is Standing.CHECKED), first)
+    second = next((other for other in others if other.standing is Standing.CHECKED), first)
+    return second if second is first else _beside(first, second)
+
+
+def _beside(lower: PeakAnswer, answer: PeakAnswer) -> PeakAnswer:
+    """The checked answer, saying so if a lower peak was reached that could not be checked in full."""
+    if lower.flown is None or not lower.flown.feasible or lower.peak >= answer.peak:
+        return answer
+    reached = (
+        f"a feasible transfer with a lower peak, {lower.peak:.7g} {lower.problem.norm.unit}, was reached"
+    )
+    return replace(answer, reason=f"{reached} but not checked: {lower.reason}", next_step=lower.next_step)
 
 
 def until_last_window(problem: TransferProblem) -> TransferProblem:

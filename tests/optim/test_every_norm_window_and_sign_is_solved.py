@@ -122,6 +122,25 @@ def test_the_default_falls_back_on_the_reference(monkeypatch):
     assert alone.next_step
 
 
+def test_a_lower_peak_that_could_not_be_checked_is_told(monkeypatch):
+    finish = import_module("intermit.optim.peak.finish").Finish
+    honest, calls = finish.__call__, []
+
+    def doubtful(self, candidate):
+        calls.append(candidate)
+        answer = honest(self, candidate)
+        return answer if len(calls) > 1 else replace(answer, standing=Standing.UNDECIDED, reason="doubt")
+
+    monkeypatch.setattr(finish, "__call__", doubtful)
+    problem = paper_transfer(Euclidean(), horizon="11.22")
+    answer = minimum_peak(problem, search=ONE, refinement=ROUGH)
+    assert answer.standing is Standing.CHECKED
+    assert "lower peak" in answer.reason
+    assert answer.reason.endswith("doubt")
+    monkeypatch.undo()
+    assert not minimum_peak(problem, search=ONE, refinement=ROUGH).reason
+
+
 def test_starts_seeds_and_local_optima_are_recorded():
     answer = minimum_peak(tumbling(LargestComponent()), search=MultiStart(starts=3, seed=7), refinement=ROUGH)
     starts = answer.search.starts
