@@ -64,7 +64,7 @@ def floor_claim(facts: FloorFacts) -> Claim:
         reason, step = _shortfall(floor)
         statement = f"R(t) >= R_min > 0 {asked}, from every start with {floor.initial.description}"
         return _undecided("filter.floor", title, statement, reason, step, quantities)
-    asked = "for all t >= 0" if floor.horizon is None else f"on [0, {_seconds(floor.horizon)}]"
+    asked = _covered(floor)
     certified = Quantity(
         "certified_floor",
         floor.value,
@@ -102,7 +102,7 @@ def convergence_claim(facts: FloorFacts, found: Convergence | None, attitude: fl
     quantities = _reach_quantities(floor, found)
     if floor.schedule.period is None:
         reason = "the table is finite: after its last window nothing acts, so no limit exists to speak of"
-        step = "give the schedule a period if it repeats; the proved bounds over the table stand"
+        step = f"give the schedule a period if it repeats; the proved bounds stand {_covered(floor)}"
         return _undecided("convergence", title, general, reason, step, quantities)
     if not found.converges:
         reason, step = _shortfall(floor)
@@ -152,11 +152,12 @@ def torque_claim(
         return _undecided(
             "torque.limit", title, statement, _no_system(facts.law_name), "simulate; no bound is proved"
         )
-    statement += f" from every start with {floor.initial.description}"
+    where = f"from every start with {floor.initial.description}"
     quantities = torque_quantities(bound)
     if not reaches_far_enough(floor):
         reason, step = _shortfall(floor)
-        return _undecided("torque.limit", title, statement, reason, step)
+        return _undecided("torque.limit", title, f"{statement} {where}", reason, step)
+    statement += f" {_covered(floor)}, {where}"
     if Fraction(bound.applied) <= limit:
         margin = Quantity(
             "torque_reserve", float(limit) - bound.applied, float(limit) - bound.applied, "N m", "reserve"
@@ -207,6 +208,11 @@ def torque_quantities(bound: TorqueBound) -> tuple[Quantity, ...]:
 def reaches_far_enough(floor: Floor) -> bool:
     """Whether the certificate covers all that can be asked: all time, or the whole finite table."""
     return floor.horizon is None or (floor.stuck is None and floor.schedule.period is None)
+
+
+def _covered(floor: Floor) -> str:
+    """The time that a certificate covers."""
+    return "for all t >= 0" if floor.horizon is None else f"on [0, {_seconds(floor.horizon)}]"
 
 
 def _other_answers(facts: FloorFacts) -> tuple[Quantity, ...]:

@@ -31,7 +31,7 @@ class FloorQuestion:
     run_floor : least R of the scenario's own run and that run's horizon, s, or None
     run_peak : largest applied torque of that run in `torque_norm`, N m, or None
     horizon : end of the time asked about where the table is finite, s; None is the table's
-        end, or its 100th window
+        end, or its 400th window
     search : how hard to look for the worst start; None skips the search
     options : how hard to certify
     """

@@ -18,6 +18,8 @@ from .sooner import settle_sooner
 from .torque_bound import TorqueBound, torque_bound
 from .worst_found import WorstFound, find_worst
 
+LONGEST_TABLE = 400
+"""Windows of a finite table that are certified; of a longer one the claims say up to when they speak."""
 SEARCH_PERIODS = 3
 """Periods simulated when looking for the worst start: the least R is seen early."""
 
@@ -45,7 +47,7 @@ def answer(question: FloorQuestion) -> FloorAnswer:
     q = question
     horizon = None
     if q.schedule.period is None:
-        last = q.schedule.windows[:LARGEST_PERIOD][-1].off
+        last = q.schedule.windows[:LONGEST_TABLE][-1].off
         horizon = min(q.horizon, q.schedule.end) if q.horizon is not None else min(last, q.schedule.end)
     floor = certify_floor(q.law, q.bounds, q.schedule, q.initial, horizon=horizon, options=q.options)
     tolerances = {"attitude": float(q.attitude), "rate": float(q.rate)}

@@ -58,7 +58,7 @@ def test_no_run_settles_later(floors):
     bound = settled(refined)
     generator = np.random.default_rng(3)
     latest = 0.0
-    for n in range(24):
+    for n in range(12):
         box = refined.witnesses[n % len(refined.witnesses)].initial
         s, y = (box.s_low, box.y_high) if n % 2 else (box.s_high, box.y_low)
         axis, spin = (v / np.linalg.norm(v) for v in generator.normal(size=(2, 3)))
