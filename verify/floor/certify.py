@@ -11,6 +11,7 @@ from fractions import Fraction
 from functools import cached_property
 from heapq import heapify, heappop, heappush
 from itertools import count
+from math import ceil
 from typing import final
 
 from ...models.laws import AdaptiveScaling, Law, PersistenceFilter
@@ -25,6 +26,8 @@ from .witness import LawComparison, Witness
 
 NEAR_BLIND = 1.9
 """Above this S = 1 - b0 (308 deg) a witness that got stuck is taken to have lost the error angle."""
+FADING = 8
+"""Periods are followed until lambda t reaches this, if need be."""
 WINDOW_BUDGET = 240
 """Bins times windows of a table or a period."""
 
@@ -43,7 +46,8 @@ class FloorOptions:
     degree : degree of the witness's polynomials
     slack : relative slack of the inequalities, traded against the number of steps
     max_bins : bins of the initial set (only the adaptive law needs more than one)
-    max_periods : periods after which no tail is looked for any more
+    max_periods : periods after which no tail is looked for any more; up to ten times as many where
+        lambda times the period is small
     settling_moves : how often the bin that settles last is refined (see `sooner`)
     """
 
@@ -170,8 +174,8 @@ def certify_floor(
         witnesses: tuple[Witness, ...] = (run.complete(Witness(system, initial, ())),)
     else:
         witnesses = run.binned(initial, bounds)
-    ends = [w.stuck if w.stuck is not None else w.end for w in witnesses]
-    reached = None if all(w.tail is not None for w in witnesses) else min(ends)
+    ends = [w.stuck if w.stuck is not None else w.end for w in witnesses if w.tail is None]
+    reached = min(ends, default=None)
     return Floor(law, bounds, schedule, initial, witnesses, reached)
 
 
@@ -231,7 +235,7 @@ class FloorProof:
             tail = self._tail(stop, state, before) if before is not None else None
             if tail is not None:
                 lowest = min(min(s.controls["r"]) for s in tail.steps)
-                if lowest >= 0.999 * least or stop >= self.options.max_periods * period:
+                if lowest >= 0.999 * least or stop >= self._max_periods * period:
                     return Witness(self.system, early.initial, tuple(steps), tail)
         return Witness(self.system, early.initial, tuple(steps))
 
@@ -253,7 +257,7 @@ class FloorProof:
             stop = self.schedule.windows[LARGEST_PERIOD].on
             return [(start, stop)] if start < stop else []
         first = start // period + 1
-        ends = [n * period for n in range(first, max(first, self.options.max_periods) + 1)]
+        ends = [n * period for n in range(first, max(first, self._max_periods) + 1)]
         return list(zip([start, *ends[:-1]], ends, strict=True))
 
     def early(self, initial: InitialSet, stop: Fraction) -> Witness:
@@ -278,6 +282,13 @@ class FloorProof:
                 lambda b: self.complete(self.early(b, stop)),
             )
         )
+
+    @property
+    def _max_periods(self) -> int:
+        """Periods enough for the rate's push to fade: s may grow for some 2/lambda before it shrinks."""
+        assert self.schedule.period is not None
+        asked, loss = self.options.max_periods, self.system.decay * self.schedule.period
+        return max(asked, min(10 * asked, ceil(FADING / loss)))
 
     @property
     def _max_bins(self) -> int:

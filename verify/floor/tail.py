@@ -20,7 +20,9 @@ from ..enclosure.stepping import CannotProceedError, ComparisonSystem, Step, Ste
 
 ATTEMPTS = 4
 """How often the start of a periodic component is moved to its loose side."""
-LARGEST_RATIO = 0.995
+SLOWEST = 0.003
+"""Least share of its start that a periodic component is taken to forget over a period."""
+LARGEST_RATIO = 0.998
 """A decay per period slower than this does not count as a decay."""
 
 
@@ -125,7 +127,7 @@ def _loosened(
     for i, (name, sign) in enumerate(zip(system.names, system.signs, strict=True)):
         if name in settled or sign * (end[name] - values[i]) <= 0:
             continue
-        drift = (end[name] - values[i]) / max(1.0 - contraction, 0.05)
+        drift = (end[name] - values[i]) / max(1.0 - contraction, SLOWEST)
         values[i] += 1.02 * drift + sign * 1e-6 * abs(values[i])
         changed = True
     return values if changed else None

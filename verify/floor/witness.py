@@ -61,6 +61,8 @@ class LawComparison(PeriodicSystem):
     """A comparison system of one law, with the names of what it bounds."""
 
     floor_component = "r"
+    decay: Fraction
+    """lambda, 1/s."""
 
     @abstractmethod
     def start(self, initial: InitialSet) -> tuple[float, ...]:

@@ -158,3 +158,25 @@ def test_rates_too_small_to_matter_do_not_stop_the_proof(law):
         assert floor.horizon is None
         values.append(floor.value)
     assert values[0] * (1 - 1e-4) <= values[2] <= values[1] <= values[0]
+
+
+@pytest.mark.parametrize(("law", "bandwidth"), [(PERSISTENCE, F("0.012")), (ADAPTIVE, F("0.02"))])
+def test_periods_far_shorter_than_the_filter_repeat_too(law, bandwidth):
+    """A window a second, lambda T a hundredth: one period decays slightly, the proof is the same."""
+    schedule = build_schedule([Window(F(0), F("0.4"))], Hermite(), period=F(1))
+    law = replace(law, lambda_=bandwidth, **({"k0": 2 * bandwidth} if law is ADAPTIVE else {}))
+    start = InitialSet.from_bounds(BOUNDS, max_angle_deg=F(60), max_weighted_rate=bandwidth / 2)
+    floor = certify_floor(law, BOUNDS, schedule, start, options=FloorOptions(max_bins=6))
+    assert floor.horizon is None
+    assert 0.998 * law.R0 < floor.value < law.R0
+
+
+def test_the_time_covered_is_that_of_the_witness_which_ends():
+    """Witnesses with a repeating part cover all time and must not shorten what the others cover."""
+    schedule = build_schedule([Window(F(0), F("0.4"))], Hermite(), period=F(1))
+    law = replace(ADAPTIVE, lambda_=F("0.01"), k0=F("0.02"))
+    start = InitialSet.from_bounds(BOUNDS, max_angle_deg=F(60), max_weighted_rate=F("0.005"))
+    options = FloorOptions(max_bins=4, max_periods=4)
+    floor = certify_floor(law, BOUNDS, schedule, start, options=options)
+    without = [w.end for w in floor.witnesses if w.tail is None]
+    assert floor.horizon == min(without, default=None)
