@@ -2241,7 +2241,7 @@ def require_change(M: Matrix, radius: Fraction, side: str, r: Fraction, witness:
 # only choose multipliers, which are then rounded and checked in integers.
 
 PEAK_BITS = 100
-PEAK_BOXES = 400_000
+PEAK_BOXES = 150_000
 PEAK_CELLS = 96
 PEAK_DEGREE = 12
 Solid = list[list[list[int]]]
