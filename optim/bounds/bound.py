@@ -90,8 +90,11 @@ def certified_lower_bound(problem: TransferProblem, *, options: PathOptions | No
     (momentum and path) and, for the largest component from rest to exact rest, components.
     """
     options = options or PathOptions()
-    bounds = _euclidean(problem, options)
-    if not isinstance(problem.norm, Euclidean):
+    if isinstance(problem.norm, Euclidean):
+        bounds = _euclidean(problem, options)
+    else:
+        # The invariant set lies in the ball of the longest torque: little is lost by a coarse potential here.
+        bounds = _euclidean(problem, options.coarse())
         longest = longest_vertex(problem.norm)
         bounds = [replace(b, name=f"Euclidean {b.name}", exact=b.exact / longest) for b in bounds]
         bounds += _by_invariant_set(problem, options)

@@ -8,65 +8,76 @@ from typing import final
 import numpy as np
 from numpy.typing import NDArray
 
-from .barrier import BallBarrier, maximise, maximise_linear
+from .interior_point import maximise_in_balls, maximise_in_halfspaces
 
 Array = NDArray[np.float64]
 
+_CORNERS = np.array([[i, j, k] for i in (-1.0, 1.0) for j in (-1.0, 1.0) for k in (-1.0, 1.0)])
+
 
 class RateConstraint(ABC):
-    """h(v) <= 1 at points, for rates v linear in the coefficients of a potential."""
+    """h(v) <= 1 at points, for rates v linear in the coefficients of a potential; one for each program."""
 
     @abstractmethod
-    def maximise(self, objective: Array, features: Array) -> Array:
-        """Coefficients (m,) that maximise objective . c with h(features[i] c) <= 1, features (n, m, 3)."""
+    def begin(self, features: Array) -> None:
+        """Constrain the first points: v = features[i] c with features (k, 3, m)."""
+
+    @abstractmethod
+    def add(self, features: Array, rates: Array, heights: Array) -> None:
+        """Constrain further points, at which the last potential had these rates (k, 3) and h of them (k,)."""
+
+    @abstractmethod
+    def maximise(self, objective: Array, *, gap: float) -> Array:
+        """Coefficients (m,) that maximise objective . c, to a relative gap."""
 
 
 @final
 class ConeConstraint(RateConstraint):
     """|v| <= 1 at every point."""
 
-    def maximise(self, objective: Array, features: Array) -> Array:
-        """Interior-point steps on second-order cones."""
-        return maximise(objective, BallBarrier.from_features(features))
+    def begin(self, features: Array) -> None:
+        """Take them all."""
+        self._features = features
+
+    def add(self, features: Array, rates: Array, heights: Array) -> None:
+        """Take them all."""
+        del rates, heights  # the cone needs no hint where it is touched
+        self._features = np.concatenate([self._features, features])
+
+    def maximise(self, objective: Array, *, gap: float) -> Array:
+        """Interior-point steps on balls; far too many points are thinned to those near their limit."""
+        c = maximise_in_balls(objective, self._features, gap=gap)
+        n, _, m = self._features.shape
+        if n > 12 * m:
+            square = ((self._features.reshape(3 * n, m) @ c).reshape(n, 3) ** 2).sum(axis=1)
+            self._features = self._features[square > 0.8]
+        return c
 
 
 @final
 class CutConstraint(RateConstraint):
-    """v.H <= 1 for boundary points H of the set of momenta, added where they are violated.
-
-    One object serves one program: it remembers which pairs of point and H have mattered, so that
-    later calls, with more points at the end, start from there.
-    """
+    """v.H <= 1 for boundary points H of the set of momenta, added where they are violated."""
 
     def __init__(self, boundary: Array) -> None:
         self._boundary = boundary
-        compass = np.array(
-            [[i, j, k] for i in (-1, 0, 1) for j in (-1, 0, 1) for k in (-1, 0, 1)], dtype=float
-        )
-        corners = compass[(compass != 0).sum(axis=1) == 3]
-        self._first = np.unique(np.argmax(corners @ boundary.T, axis=1))
-        self._points = np.zeros(0, dtype=np.int64)
-        self._cuts = np.zeros(0, dtype=np.int64)
-        self._known = 0
 
-    def maximise(self, objective: Array, features: Array) -> Array:
-        """Solve, add violated cuts, and again until few are violated."""
-        fresh = np.arange(self._known, len(features))
-        self._points = np.concatenate([self._points, np.repeat(fresh, len(self._first))])
-        self._cuts = np.concatenate([self._cuts, np.tile(self._first, len(fresh))])
-        self._known = len(features)
-        coefficients = np.zeros(len(objective))
-        for _ in range(3):
-            rows = np.einsum("nmi,ni->nm", features[self._points], self._boundary[self._cuts])
-            coefficients = maximise_linear(objective, rows)
-            loose = rows @ coefficients < 0.7
-            rates = np.einsum("nmi,m->ni", features, coefficients) @ self._boundary.T
-            highest = rates.argmax(axis=1)
-            over = np.flatnonzero(rates.max(axis=1) > 1 + 1e-3)
-            if len(rows) > 4 * len(features):
-                self._points, self._cuts = self._points[~loose], self._cuts[~loose]
-            if not len(over):
-                break
-            self._points = np.concatenate([self._points, over])
-            self._cuts = np.concatenate([self._cuts, highest[over]])
-        return coefficients
+    def begin(self, features: Array) -> None:
+        """Cut with the H along the eight diagonals."""
+        first = self._boundary[np.unique(np.argmax(_CORNERS @ self._boundary.T, axis=1))]
+        self._rows = np.einsum("kim,ci->kcm", features, first).reshape(-1, features.shape[2])
+        self._many = 0
+
+    def add(self, features: Array, rates: Array, heights: Array) -> None:
+        """Cut with the H along the rate, stretched to make up for h being known from above only."""
+        loads = rates @ self._boundary.T
+        stretch = heights / loads.max(axis=1)
+        cuts = self._boundary[loads.argmax(axis=1)] * stretch[:, None]
+        self._rows = np.concatenate([self._rows, np.einsum("kim,ki->km", features, cuts)])
+
+    def maximise(self, objective: Array, *, gap: float) -> Array:
+        """Interior-point steps on halfspaces; idle cuts are dropped, rarely: they may be needed again."""
+        c = maximise_in_halfspaces(objective, self._rows, gap=gap)
+        if len(self._rows) > self._many:
+            self._rows = self._rows[self._rows @ c > 0.6]
+            self._many = max(2 * len(self._rows), 60 * len(c))
+        return c

@@ -33,6 +33,7 @@ from .momentum_sets import (
     greatest_inertia_above,
     least_inertia_below,
     length_above,
+    sharpened,
 )
 from .rate import ExactMatrix, exact_inverse
 from .support_table import SupportTable
@@ -78,13 +79,11 @@ class GaugeSet(MomentumSet):
         """Less of the piecewise linear interpolation and of the nearest node's ellipsoid."""
         return self.table.above(v)
 
-    def support_over_boxes(self, boxes: TaylorBoxes) -> Array:
-        """Least of the bounds by corners, by the nearest ellipsoid and by components."""
-        ellipsoids = self.table.ellipsoids(boxes.middle)
-        by_ellipsoid = boxes.by_square(ellipsoids)
-        return np.minimum(
-            np.minimum(by_ellipsoid, boxes.by_corners(self)), boxes.by_components(self.widths())
-        )
+    def support_over_boxes(self, boxes: TaylorBoxes, enough: float) -> Array:
+        """Bound by the nearest ellipsoid, or by components or corners where that is less."""
+        bound = boxes.by_square(self.table.ellipsoids(boxes.middle))
+        bound = sharpened(bound, boxes, enough, lambda part: part.by_components(self.widths()))
+        return sharpened(bound, boxes, enough, lambda part: part.by_corners(self))
 
     @cached_property
     def _widths(self) -> Array:

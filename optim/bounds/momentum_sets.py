@@ -7,6 +7,7 @@ between two attitudes by at most c times the travel, the integral of n where H(t
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
@@ -36,9 +37,19 @@ class TaylorBoxes:
     ----------
     tables : array (n, 3, m)
         Coefficients in the order of `exponents`: constant, three linear, six quadratic, the rest.
+    region : array (n, m)
+        Those of a polynomial that is >= -slack wherever v matters.
+    slack : float
+        >= 0.
     """
 
     tables: Array
+    region: Array
+    slack: float
+
+    def of(self, which: NDArray[np.int64]) -> TaylorBoxes:
+        """Return some of the boxes."""
+        return TaylorBoxes(self.tables[which], self.region[which], self.slack)
 
     @property
     def middle(self) -> Array:
@@ -60,7 +71,9 @@ class TaylorBoxes:
         """Bound of sqrt(v' W v) with W of shape (n, 3, 3) or (3, 3), from the square's own Taylor series.
 
         Second-order terms of the square are formed before absolute values are taken: where a
-        potential is good, v turns but hardly changes in length, and they cancel.
+        potential is good, v turns but hardly changes in length, and they cancel. At the edge of
+        the region the square may rise steeply outwards: a multiple of the region's polynomial,
+        which is not negative where v matters, is added so that the slopes cancel.
         """
         factor = np.linalg.cholesky(metric)
         tables = np.einsum("...ji,...jk->...ik", factor, self.tables)
@@ -71,15 +84,26 @@ class TaylorBoxes:
         for place, (j, k) in enumerate(_QUADRATIC):
             second[:, place] += gram[:, j, k] * (1 if j == k else 2)
         square = [j == k for j, k in _QUADRATIC]
-        known = np.where(square, np.maximum(second, 0.0), np.abs(second)).sum(axis=1)
         size = np.abs(v)
         turn = np.abs(d).sum(axis=2)
         bend = np.abs(q).sum(axis=2)
         tail = np.abs(tables[:, :, 10:]).sum(axis=2)
         beyond = (2 * (size + turn + bend) * tail + tail * tail + 2 * turn * bend + bend * bend).sum(axis=1)
         noise = 1e-13 * ((size + turn + bend + tail) ** 2).sum(axis=1)
-        total = (v * v).sum(axis=1) + np.abs(first).sum(axis=1) + known + beyond + noise
-        return np.asarray(np.sqrt(total))
+        fixed = (v * v).sum(axis=1) + beyond + noise
+        F, slope, curve = self.region[:, 0] + self.slack, self.region[:, 1:4], self.region[:, 4:10]
+        rest = np.abs(self.region[:, 10:]).sum(axis=1) + 1e-13 * np.abs(self.region).sum(axis=1)
+        best = np.full(len(fixed), np.inf)
+        steep = np.maximum(
+            -(first * slope).sum(axis=1) / np.maximum((slope * slope).sum(axis=1), 1e-300), 0.0
+        )
+        for share in (0.0, 0.5, 1.0):
+            factor = (share * steep)[:, None]
+            bent = second + factor * curve
+            known = np.where(square, np.maximum(bent, 0.0), np.abs(bent)).sum(axis=1)
+            linear = np.abs(first + factor * slope).sum(axis=1)
+            best = np.minimum(best, fixed + linear + known + factor[:, 0] * (F + rest))
+        return np.asarray(np.sqrt(np.maximum(best, 0.0)))
 
     def by_components(self, widths: Array) -> Array:
         """Bound of sum widths_i |v_i|, itself above h: sharp for boxes.
@@ -95,6 +119,16 @@ class TaylorBoxes:
         return np.asarray(combined[:, 0] + np.abs(combined[:, 1:]).sum(axis=1) + flips + noise)
 
 
+def sharpened(
+    bound: Array, boxes: TaylorBoxes, enough: float, other: Callable[[TaylorBoxes], Array]
+) -> Array:
+    """Lower a bound (n,) to another one where it is above `enough`."""
+    loose = np.flatnonzero(bound > enough)
+    if len(loose):
+        bound[loose] = np.minimum(bound[loose], other(boxes.of(loose)))
+    return bound
+
+
 class MomentumSet(ABC):
     """A compact convex symmetric set of momenta with 0 inside; momentum in N m s per unit of travel."""
 
@@ -103,8 +137,11 @@ class MomentumSet(ABC):
         """Upper bound of h(v), shape (..., 3) -> (...), up to the relative `EVALUATION_SLACK`."""
 
     @abstractmethod
-    def support_over_boxes(self, boxes: TaylorBoxes) -> Array:
-        """Upper bound, box by box, of h over the boxes, up to the relative `EVALUATION_SLACK`."""
+    def support_over_boxes(self, boxes: TaylorBoxes, enough: float) -> Array:
+        """Upper bound, box by box, of h over the boxes, up to the relative `EVALUATION_SLACK`.
+
+        Below `enough` it need not be sharp.
+        """
 
     @abstractmethod
     def widths(self) -> Array:
@@ -151,9 +188,9 @@ class UnitBall(MomentumSet):
         """Euclidean length."""
         return np.asarray(np.sqrt((v * v).sum(axis=-1)))
 
-    def support_over_boxes(self, boxes: TaylorBoxes) -> Array:
-        """Smaller of the bound by corners and the bound of the square."""
-        return np.minimum(boxes.by_corners(self), boxes.by_square(np.eye(3)))
+    def support_over_boxes(self, boxes: TaylorBoxes, enough: float) -> Array:
+        """Bound of the square, or by corners where that is less."""
+        return sharpened(boxes.by_square(np.eye(3)), boxes, enough, lambda part: part.by_corners(self))
 
     def widths(self) -> Array:
         """One along each axis."""

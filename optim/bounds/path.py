@@ -6,7 +6,7 @@ the spherical ellipse of its length, and the smaller the region the better a pol
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import final
 
@@ -14,10 +14,20 @@ import numpy as np
 
 from ...models.rigid_body import RigidBody
 from .chart import Quaternion, arc_to_identity
-from .fit import Fit
+from .fit import Fit, PotentialProgram
 from .momentum_sets import MomentumSet
 from .prove import BranchAndBound
-from .separation import WIDEST_ARC, Separation, Target, cheap_separation, estimated_travel, separation
+from .separation import (
+    WIDEST_ARC,
+    Separation,
+    Target,
+    cheap_separation,
+    potential_program,
+    separation,
+)
+
+_ROUGH = 4e-3
+"""Excess of the rate where a potential only tells how large a region is needed."""
 
 
 @final
@@ -51,6 +61,10 @@ class PathOptions:
             raise ValueError(f"expected trial > 0, 0 <= share <= 1: received {self.trial}, {self.share}")
         if not 0 < self.tolerance < 1:
             raise ValueError(f"tolerance must be in (0, 1), received {self.tolerance}")
+
+    def coarse(self) -> PathOptions:
+        """Return options that cost little."""
+        return replace(self, degree=min(self.degree or 4, 4), tolerance=max(self.tolerance, 2e-3))
 
     def degree_for(self, arc_sum: float) -> int:
         """Degree that pays for a region of that arc sum (rad)."""
@@ -137,20 +151,27 @@ def _nearest(
     least = 2 * arc / speed * (1 + 1e-3)
     highest = max(min(guess, widest), least)
     guess = highest
+    program: PotentialProgram | None = None
+
+    def made(degree: int) -> PotentialProgram:
+        fit = Fit(degree=degree)
+        return potential_program(body, start, target, momenta, guess=guess, fit=fit)
+
     if limit is None:
         for degree in (4, None):
-            fit = Fit(degree=degree or options.degree_for(guess * speed / 2))
-            value = estimated_travel(body, start, momenta, guess=guess, fit=fit)
+            program = made(degree or options.degree_for(guess * speed / 2))
+            value = program.solve(_ROUGH)[1]
             if degree is None and 0.96 * guess < value < 0.998 * guess:
                 break
             guess = min(max(1.015 * value, least), highest)
+            program = None
     best: Separation | None = None
     prover = BranchAndBound(tolerance=options.tolerance)
     degree = options.degree_for(guess * speed / 2)
     for attempt in range(2):
-        fit = Fit(degree=degree if limit is None or attempt else min(degree, 5))
-        enough = np.inf if limit is None else limit
-        found = separation(body, start, target, momenta, guess=guess, fit=fit, prover=prover, enough=enough)
+        program = program or made(degree if limit is None or attempt else min(degree, 5))
+        found = separation(body, start, target, program, prover, enough=np.inf if limit is None else limit)
+        program = None
         if best is None or found.travel > best.travel:
             best = found
         if limit is not None:

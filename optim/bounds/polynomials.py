@@ -106,20 +106,20 @@ def as_table(p: Mapping[Exponent, Fraction], degree: int) -> Array:
 
 @lru_cache(maxsize=8)
 def halving_matrices(degree: int) -> Array:
-    """Substitutions t = corner/2 + t'/2 for the eight corners of the cube, shape (8, n, n).
+    """Substitutions t_axis = -+1/2 + t_axis'/2, both halves side by side: shape (3 axes, n, 2 n).
 
-    Row b, column a: coefficient of t'^a in (corner/2 + t'/2)^b. Every entry is a dyadic rational
-    below 2^53 units in its last place, hence exact, and each row's absolute sum is 1.
+    Row b, column a (or n + a): coefficient of t'^a in t^b. Every entry is a dyadic rational below
+    2^53 units in its last place, hence exact, and each row's absolute sum, per half, is 1.
     """
     table = exponents(degree)
     index = {e: i for i, e in enumerate(table)}
-    result = np.zeros((8, len(table), len(table)))
-    for number, corner in enumerate(product((-1, 1), repeat=3)):
+    result = np.zeros((3, len(table), 2 * len(table)))
+    for axis in range(3):
         for row, b in enumerate(table):
-            for a in product(*(range(n + 1) for n in b)):
-                value = 1.0
-                for axis in range(3):
-                    drop = b[axis] - a[axis]
-                    value *= comb(b[axis], a[axis]) * corner[axis] ** drop * 0.5 ** b[axis]
-                result[number, row, index[(a[0], a[1], a[2])]] = value
+            for low in range(b[axis] + 1):
+                a = (*b[:axis], low, *b[axis + 1 :])
+                value = comb(b[axis], low) * 0.5 ** b[axis]
+                column = index[(a[0], a[1], a[2])]
+                result[axis, row, column] = value * (-1.0) ** (b[axis] - low)
+                result[axis, row, len(table) + column] = value
     return result

@@ -31,7 +31,8 @@ from .polynomials import Polynomial, as_table, halving_matrices
 Array = NDArray[np.float64]
 
 _CORNERS = np.array([[i, j, k] for i in (-1.0, 1.0) for j in (-1.0, 1.0) for k in (-1.0, 1.0)])
-_BATCH = 4096
+_BATCH = 2048
+_BLIND = 6
 
 
 @final
@@ -72,14 +73,11 @@ class BranchAndBound:
 
     levels : int
         Most successive cuts of a box.
-    scouting : bool
-        Chase every violation of 1, not only the largest: for finding constraints, not for a sharp bound.
     """
 
     tolerance: float = 1e-3
     most_boxes: int = 250_000
-    levels: int = 24
-    scouting: bool = False
+    levels: int = 60
 
     def supremum(
         self, rate: Sequence[Polynomial], region: Polynomial, momenta: MomentumSet, *, degree: int
@@ -91,7 +89,7 @@ class BranchAndBound:
         unit = 2.0**-53
         error = 2.0 * (unit + self.levels * size * unit / (1 - size * unit)) * sums
         noise = float(error[:3] @ momenta.widths()) * (1 + 1e-9)
-        cut = halving_matrices(degree).transpose(1, 0, 2).reshape(size, -1)
+        cut = halving_matrices(degree)
 
         stack = [(0, np.zeros((1, 3)), first[None])]
         seen, proved, boxes = 0.0, 0.0, 0
@@ -99,22 +97,25 @@ class BranchAndBound:
         while stack:
             level, centres, tables = stack.pop()
             boxes += len(tables)
-            inside, alive = _position(tables, centres, level, float(error[3]))
+            inside, alive = _position(tables, centres, _half_sides(level), float(error[3]))
             centres, tables, inside = centres[alive], tables[alive], inside[alive]
             if not len(tables):
                 continue
-            boxes_here = TaylorBoxes(tables[:, :3])
-            upper = momenta.support_over_boxes(boxes_here) * (1 + 2 * EVALUATION_SLACK) + noise
+            if level < _BLIND:
+                stack += _children(tables, centres, level, cut[level % 3])
+                continue
+            boxes_here = TaylorBoxes(tables[:, :3], tables[:, 3], float(error[3]))
             values = momenta.support_above(boxes_here.middle)
-            if not (self.scouting and level >= 4):  # a scout also looks from just outside the edge
-                values = np.where(inside, values, 0.0)
+            values = np.where(inside, values, 0.0)
             seen = max(seen, float(values.max()))
-            high = np.argsort(-values)[: 400 if self.scouting else 20]
+            high = np.argsort(-values)[:20]
             worst += [(float(values[i]), centres[i]) for i in high if values[i] > 1]
-            target = (1.0 if self.scouting else max(seen, 1.0)) * (1 + self.tolerance)
+            target = max(seen, 1.0) * (1 + self.tolerance)
+            enough = (target - noise) / (1 + 3 * EVALUATION_SLACK)
+            upper = momenta.support_over_boxes(boxes_here, enough) * (1 + 2 * EVALUATION_SLACK) + noise
             finished = (upper <= target) | (level >= self.levels)
             if boxes > self.most_boxes:
-                if not self.scouting and self.tolerance < 0.1:
+                if self.tolerance < 0.1:
                     coarser = replace(self, tolerance=2.5 * self.tolerance)
                     return coarser.supremum(rate, region, momenta, degree=degree)
                 finished[:] = True
@@ -122,7 +123,7 @@ class BranchAndBound:
                 proved = max(proved, float(upper[finished].max()))
             rest = ~finished
             if rest.any():
-                stack += _children(tables[rest], centres[rest], level, cut)
+                stack += _children(tables[rest], centres[rest], level, cut[level % 3])
         worst.sort(key=lambda pair: -pair[0])
         kept = worst[:2000]
         points = np.array([centre for _, centre in kept]).reshape(-1, 3)
@@ -130,24 +131,30 @@ class BranchAndBound:
         return Supremum(float(np.nextafter(proved, np.inf)), seen, boxes, points, heights)
 
 
-def _position(tables: Array, centres: Array, level: int, error: float) -> tuple[Array, Array]:
+def _position(tables: Array, centres: Array, half_sides: Array, error: float) -> tuple[Array, Array]:
     """Whether the centre is inside the region, and whether any point of the box may be."""
     middle = tables[:, 3, 0]
     reach = np.abs(tables[:, 3, 1:]).sum(axis=1) * (1 + 1e-12)
-    nearest = np.maximum(np.abs(centres) - 2.0**-level, 0.0)
+    nearest = np.maximum(np.abs(centres) - half_sides, 0.0)
     in_ball = (nearest * nearest).sum(axis=1) <= 1 + 1e-9
     centre_in_ball = (centres * centres).sum(axis=1) <= 1
     return (middle >= 0) & centre_in_ball, (middle + reach + error >= 0) & in_ball
 
 
+def _half_sides(level: int) -> Array:
+    """Half the sides of a box after that many cuts, axis by axis in turn."""
+    return np.array([2.0 ** -((level + 2 - axis) // 3) for axis in range(3)])
+
+
 def _children(tables: Array, centres: Array, level: int, cut: Array) -> list[tuple[int, Array, Array]]:
-    """Cut every box into eight, in batches."""
+    """Cut every box into two, in batches."""
     size = tables.shape[2]
-    half = 2.0 ** -(level + 1)
+    offset = np.zeros((2, 3))
+    offset[:, level % 3] = np.array([-1.0, 1.0]) * _half_sides(level + 1)[level % 3]
     result = []
-    for start in range(0, len(tables), _BATCH // 8):
-        part = tables[start : start + _BATCH // 8]
-        shifted = (part @ cut).reshape(len(part), 4, 8, size).transpose(0, 2, 1, 3).reshape(-1, 4, size)
-        middles = (centres[start : start + len(part), None, :] + half * _CORNERS[None]).reshape(-1, 3)
+    for start in range(0, len(tables), _BATCH // 2):
+        part = tables[start : start + _BATCH // 2]
+        shifted = (part @ cut).reshape(len(part), 4, 2, size).transpose(0, 2, 1, 3).reshape(-1, 4, size)
+        middles = (centres[start : start + len(part), None, :] + offset).reshape(-1, 3)
         result.append((level + 1, middles, shifted))
     return result

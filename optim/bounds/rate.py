@@ -53,41 +53,29 @@ def momentum_rate_polynomials(
 def rate_features(
     points: Array, table: tuple[Exponent, ...], inverse_inertia: Array, scale: float
 ) -> tuple[Array, Array]:
-    """Return values (n, m) and momentum rates v (n, m, 3) of monomials at scaled points (n, 3), floats."""
+    """Return values (n, m) and momentum rates v (n, 3, m) of monomials at scaled points (n, 3), floats."""
     values, gradient = _monomials(points, table)
-    gradient = gradient / scale
-    x = (scale * points)[:, None, :]
-    return values, 0.25 * _body_gradient(x, gradient) @ inverse_inertia
-
-
-def potential_rates(
-    points: Array, table: tuple[Exponent, ...], inverse_inertia: Array, scale: float, coefficients: Array
-) -> Array:
-    """Momentum rate v (n, 3) of one potential at scaled points, floats."""
-    gradient = _monomials(points, table)[1].transpose(0, 2, 1) @ coefficients / scale
-    return np.asarray(0.25 * _body_gradient(scale * points, gradient) @ inverse_inertia)
+    x = scale * points
+    square = (x * x).sum(axis=1)[:, None, None]
+    cross = np.zeros((len(x), 3, 3))
+    for i in range(3):
+        cross[:, i, (i + 1) % 3], cross[:, i, (i + 2) % 3] = -x[:, (i + 2) % 3], x[:, (i + 1) % 3]
+    body = (1 - square) * np.eye(3) - 2 * cross + 2 * x[:, :, None] * x[:, None, :]
+    return values, np.matmul((0.25 / scale) * inverse_inertia @ body, gradient)
 
 
 def _monomials(points: Array, table: tuple[Exponent, ...]) -> tuple[Array, Array]:
-    """Values (n, m) and gradients (n, m, 3) of the monomials."""
+    """Values (n, m) and gradients (n, 3, m) of the monomials."""
     E = np.array(table)
-    powers = np.ones((int(E.max()) + 1, *points.shape))
-    for k in range(1, len(powers)):
-        powers[k] = powers[k - 1] * points
-    factors = [powers[E[:, axis], :, axis] for axis in range(3)]
-    gradient = np.empty((3, len(E), len(points)))
+    powers = np.ones((len(points), 3, int(E.max()) + 1))
+    for k in range(1, powers.shape[2]):
+        powers[:, :, k] = powers[:, :, k - 1] * points
+    factors = [powers[:, axis, E[:, axis]] for axis in range(3)]
+    gradient = np.empty((len(points), 3, len(E)))
     for axis in range(3):
-        others = [factors[i] for i in range(3) if i != axis]
-        lowered = E[:, axis, None] * powers[np.maximum(E[:, axis] - 1, 0), :, axis]
-        np.multiply(lowered * others[0], others[1], out=gradient[axis])
-    return (factors[0] * factors[1] * factors[2]).T, gradient.transpose(2, 1, 0)
-
-
-def _body_gradient(x: Array, gradient: Array) -> Array:
-    """Four times the derivative along unit body rates, from the gradient in x; vectors last."""
-    square = (x * x).sum(axis=-1, keepdims=True)
-    along = (x * gradient).sum(axis=-1, keepdims=True)
-    return np.asarray((1 - square) * gradient - 2 * np.cross(x, gradient) + 2 * along * x)
+        lowered = E[:, axis] * powers[:, axis, np.maximum(E[:, axis] - 1, 0)]
+        np.multiply(lowered * factors[(axis + 1) % 3], factors[(axis + 2) % 3], out=gradient[:, axis])
+    return factors[0] * factors[1] * factors[2], gradient
 
 
 def exact_inverse(rows: ExactMatrix) -> ExactMatrix:

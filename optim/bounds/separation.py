@@ -93,33 +93,29 @@ def separation(
     body: RigidBody,
     start: Quaternion,
     target: Target,
-    momenta: MomentumSet,
-    *,
-    guess: float,
-    fit: Fit,
+    program: PotentialProgram,
     prover: BranchAndBound,
+    *,
     enough: float = np.inf,
 ) -> Separation:
-    """Fit a potential on the region of paths of travel `guess` and prove what it gives.
+    """Fit the potential of a program and prove what it gives.
 
-    Fitting stops early once the travel is going to be `enough`.
+    Fitting stops early once the travel is `enough`.
     """
-    chart, ends = _setting(start, target, momenta, guess)
-    program = PotentialProgram(fit, chart, ends, momenta, body.inverse_inertia)
-    coefficients = program.solve_sampled()
-    best, best_value, idle = coefficients, -np.inf, 0
-    scout = BranchAndBound(tolerance=3e-3, most_boxes=100_000, levels=6, scouting=True)
+    fit, chart, momenta = program.fit, program.chart, program.momenta
+    best: Separation | None = None
     for _ in range(fit.proofs):
-        found = _largest_rate(body, chart, _exact(coefficients, fit.degree), momenta, scout)
-        value = program.value(coefficients) / max(found.seen, 1.0)
-        idle = 0 if value > best_value * (1 + 3e-4) else idle + 1
-        if value > best_value:
-            best, best_value = coefficients, value
-        if found.seen <= 1 + fit.excess or idle > 2 or program.value(coefficients) / found.value >= enough:
+        unknowns = program.solve()[0]
+        potential = _exact(program.coefficients(unknowns), fit.degree)
+        found = proved_separation(body, start, target, momenta, chart, potential, prover)
+        better = best is None or found.travel > best.travel * (1 + Fraction(3, 10**4))
+        if best is None or found.travel > best.travel:
+            best = found
+        if found.supremum.seen <= 1 + fit.excess or not better or float(found.travel) >= enough:
             break
-        program.add(found.worst, found.heights)
-        coefficients = program.solve()
-    return proved_separation(body, start, target, momenta, chart, _exact(best, fit.degree), prover)
+        program.constrain_about(found.supremum.worst, unknowns)
+    assert best is not None
+    return best
 
 
 def _exact(coefficients: Array, degree: int) -> Polynomial:
@@ -135,32 +131,16 @@ def _largest_rate(
     return prover.supremum(rate, chart.region, momenta, degree=max(degree + 1, 4))
 
 
-def estimated_travel(
-    body: RigidBody,
-    start: Quaternion,
-    momenta: MomentumSet,
-    *,
-    guess: float,
-    fit: Fit,
-) -> float:
-    """Return what a potential is likely to give on the region of `guess`, without proof."""
-    chart, ends = _setting(start, Target(), momenta, guess)
-    program = PotentialProgram(fit, chart, ends, momenta, body.inverse_inertia)
-    return program.value(program.solve_sampled())
-
-
-def _setting(
-    start: Quaternion, target: Target, momenta: MomentumSet, guess: float
-) -> tuple[Chart, tuple[Array, Array]]:
-    """Build the chart for paths of travel `guess` and the scaled end points."""
-    speed = momenta.fastest_rate()
-    arc = min(guess * float(speed) / 2 + float(target.arc_above()) + 1e-4, WIDEST_ARC)
+def potential_program(
+    body: RigidBody, start: Quaternion, target: Target, momenta: MomentumSet, *, guess: float, fit: Fit
+) -> PotentialProgram:
+    """Set up the program of a potential on the region of paths of travel `guess`."""
+    arc = min(guess * float(momenta.fastest_rate()) / 2 + float(target.arc_above()) + 1e-4, WIDEST_ARC)
     chart = chart_between(start, arc)
-    x_start, _ = chart.coordinates(start)
-    x_target: Vector = (-chart.middle[0], -chart.middle[1], -chart.middle[2])
     scale = float(chart.outer)
+    x_start, x_target = chart.coordinates(start)[0], target_coordinates(chart)
     ends = (np.array([float(c) for c in x_start]) / scale, np.array([float(c) for c in x_target]) / scale)
-    return chart, ends
+    return PotentialProgram(fit, chart, ends, momenta, body.inverse_inertia)
 
 
 def proved_separation(
