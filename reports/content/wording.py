@@ -65,3 +65,9 @@ def shared(notes: Iterable[tuple[str, str]]) -> tuple[str, ...]:
     for name, note in notes:
         by_note.setdefault(note, []).append(name)
     return tuple(f"{', '.join(names)}: {note}" for note, names in by_note.items())
+
+
+def shares(columns: Iterable[Iterable[int]]) -> tuple[float, ...]:
+    """Part of a table's width for each column, from the lengths of its texts; together 1."""
+    weights = [min(max((*lengths, 5)), 36) for lengths in columns]
+    return tuple(w / sum(weights) for w in weights)

@@ -21,6 +21,7 @@ from ..content.drawn import LEGEND_LONGEST
 from ..content.heading import Heading
 from ..content.names import FullNames
 from ..content.verdicts import claim_numbers
+from ..content.wording import shares
 from .latex import cell, text, unit
 from .pgfplots import plots
 
@@ -69,13 +70,23 @@ def paper_files(
 
 def booktabs(table: Table, names: FullNames) -> str:
     """One table as a booktabs tabular, to be put into the paper's own float."""
-    share = 0.94 / max(len(table.columns), 1)
-    columns = "".join(rf"p{{{share - 0.018:.3f}\linewidth}}" for _ in table.columns)
     heads = [
         text(names.brief(label, NARROW)) + (f" (${unit(u)}$)" if u else "") for _, label, u in table.columns
     ]
     rows = [[cell(_cut(row.get(key), names), u) for key, _, u in table.columns] for row in table.rows]
+    room = 0.94 - 0.018 * len(heads)
+    lengths = [
+        [len(label), *(_length(row.get(key)) for row in table.rows)] for key, label, _ in table.columns
+    ]
+    columns = "".join(rf"p{{{room * share:.3f}\linewidth}}" for share in shares(lengths))
     return tabular(columns, heads, rows, tuple(text(names.brief(n)) for n in table.notes))
+
+
+def _length(value: Cell) -> int:
+    """Characters a cell would like to have side by side; a number has about ten."""
+    if isinstance(value, Mapping) and not {"code", "text", "verdict"} & set(value):
+        return 10
+    return len(value if isinstance(value, str) else "".join(map(str, (value or {}).values())))
 
 
 def _cut(value: Cell, names: FullNames) -> Cell:

@@ -22,14 +22,15 @@ from ..content.blocks import (
     Verdicts,
 )
 from ..content.drawn import LEGEND_LONGEST
-from ..content.names import FullNames
+from ..content.names import LONGEST, FullNames
 from ..content.printable import directed, printable
 from ..content.studies import values_text
 from ..content.verdicts import claim_numbers, refutation
+from ..content.wording import shares, short
 from ..numbers import number, unit_text, write
 from ..values import thaw
 
-BREAK_EVERY = 24
+BREAK_EVERY = 16
 """Characters of an unbroken word after which a line may break."""
 
 
@@ -91,8 +92,7 @@ def _(block: Replay, names: FullNames) -> None:
 
 @spoken.register
 def _(block: Text, names: FullNames) -> dict[str, Any]:
-    del names
-    return {"kind": "text", "text": words(block.text), "style": block.kind}
+    return {"kind": "text", "text": words(names.within(block.text)), "style": block.kind}
 
 
 @spoken.register
@@ -171,7 +171,7 @@ def _details(claim: Mapping[str, Any], names: FullNames) -> dict[str, Any]:
     return {
         "title": words(names.brief(claim["title"])),
         "verdict": claim["verdict"],
-        "statement": words(claim["statement"]),
+        "statement": words(names.within(claim["statement"])),
         "rows": rows,
     }
 
@@ -198,7 +198,19 @@ def _(block: Table, names: FullNames) -> dict[str, Any]:
     ]
     rows = [[_table_cell(row.get(key), unit, names) for key, _, unit in block.columns] for row in block.rows]
     title, notes = words(names.brief(block.title)), [words(n) for n in block.notes]
-    return {"kind": "table", "title": title, "heads": heads, "rows": rows, "notes": notes}
+    lengths = [
+        [max(map(len, (*head.split(), ""))), *(_length(row[i]) for row in rows)]
+        for i, head in enumerate(heads)
+    ]
+    widths = [round(s, 4) for s in shares(lengths)]
+    return {"kind": "table", "title": title, "heads": heads, "rows": rows, "notes": notes, "widths": widths}
+
+
+def _length(shown: Mapping[str, Any]) -> int:
+    """Characters a cell would like to have side by side."""
+    code = shown.get("code", "")
+    badge = f"{shown['verdict']}...." if "verdict" in shown else ""
+    return len(badge) + len(shown.get("text", "")) + len(code) * 5 // 4
 
 
 def _table_cell(value: Cell, unit: str, names: FullNames) -> dict[str, Any]:
@@ -230,7 +242,7 @@ def _(block: Charts, names: FullNames) -> dict[str, Any]:
         {
             "file": f"{c.key}.svg",
             "title": words(names.brief(c.title)),
-            "alt": words(names.brief(c.alt)),
+            "alt": words(short(c.alt, LONGEST)),
             "cut": [words(n) for n in names.of_chart(c, LEGEND_LONGEST)],
         }
         for c in block.charts

@@ -116,6 +116,14 @@
   });
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
 
+  function reach() {
+    document.querySelectorAll("h1,.origin,tr.group bdi,.card h3 bdi,dt bdi,pre,.scroll").forEach(function (e) {
+      if (e.scrollHeight > e.clientHeight + 1) e.tabIndex = 0;
+    });
+  }
+  reach();
+  window.addEventListener("resize", reach);
+
   let before = "", opened = [];
   window.addEventListener("beforeprint", function () {
     if (printing) return;
