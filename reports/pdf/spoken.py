@@ -199,7 +199,7 @@ def _(block: Table, names: FullNames) -> dict[str, Any]:
     rows = [[_table_cell(row.get(key), unit, names) for key, _, unit in block.columns] for row in block.rows]
     title, notes = words(names.brief(block.title)), [words(n) for n in block.notes]
     lengths = [
-        [max(map(len, (*head.split(), ""))), *(_length(row[i]) for row in rows)]
+        [2 + max(map(len, (*head.split(), ""))), *(_length(row[i]) for row in rows)]
         for i, head in enumerate(heads)
     ]
     widths = [round(s, 4) for s in shares(lengths)]
@@ -209,7 +209,7 @@ def _(block: Table, names: FullNames) -> dict[str, Any]:
 def _length(shown: Mapping[str, Any]) -> int:
     """Characters a cell would like to have side by side."""
     code = shown.get("code", "")
-    badge = f"{shown['verdict']}...." if "verdict" in shown else ""
+    badge = f"{shown['verdict']}.........." if "verdict" in shown else ""
     return len(badge) + len(shown.get("text", "")) + len(code) * 5 // 4
 
 
