@@ -86,7 +86,7 @@ def edge_question(seed: int) -> FloorQuestion:
     a = decimal(least / T**2 * 10 ** rng.uniform(-1, 1))
     gamma = decimal(10 ** rng.uniform(-3, 0.5) / (mean * float(R0) * float(a) * T))
     law = AdaptiveScaling(lambda_=lam, R0=R0, k0=k0, gamma=gamma, a=a)
-    return FloorQuestion(law=law, options=FloorOptions(max_bins=6), **common)
+    return FloorQuestion(law=law, options=FloorOptions(max_bins=6, settling_moves=2), **common)
 
 
 def without_rate(q: FloorQuestion) -> FloorQuestion:

@@ -55,7 +55,7 @@ def random_question(seed: int) -> FloorQuestion:
     k0 = decimal(rng.uniform(0.5, 1.5) / (mean * float(period)))
     gamma = decimal(rng.uniform(0.02, 1.0) * float(k0) / float(R0))
     law = AdaptiveScaling(lambda_=lam, R0=R0, k0=k0, gamma=gamma)
-    return FloorQuestion(law=law, options=FloorOptions(max_bins=10), **common)
+    return FloorQuestion(law=law, options=FloorOptions(max_bins=10, settling_moves=2), **common)
 
 
 def random_inertia(rng):

@@ -88,7 +88,7 @@ def hostile_question(seed: int) -> FloorQuestion:
     gamma = decimal(10 ** rng.uniform(-3, 0.5) / period / float(R0))
     a = decimal(10 ** rng.uniform(-1.5, 1))
     law = AdaptiveScaling(lambda_=lam, R0=R0, k0=k0, gamma=gamma, a=a)
-    return FloorQuestion(law=law, options=FloorOptions(max_bins=8), **common)
+    return FloorQuestion(law=law, options=FloorOptions(max_bins=8, settling_moves=2), **common)
 
 
 def perturbed(body: RigidBody, tolerance, rng) -> RigidBody:
