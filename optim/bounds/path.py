@@ -15,7 +15,7 @@ import numpy as np
 from ...models.rigid_body import RigidBody
 from .chart import Quaternion, arc_to_identity
 from .fit import Fit, PotentialProgram
-from .momentum_sets import MomentumSet
+from .momentum_sets import MomentumSet, UnitBall
 from .prove import BranchAndBound
 from .separation import (
     WIDEST_ARC,
@@ -154,7 +154,8 @@ def _nearest(
     program: PotentialProgram | None = None
 
     def made(degree: int) -> PotentialProgram:
-        fit = Fit(degree=degree)
+        # Sets with edges gain least from a third proof, and theirs cost most.
+        fit = Fit(degree=degree, proofs=3 if isinstance(momenta, UnitBall) else 2)
         return potential_program(body, start, target, momenta, guess=guess, fit=fit)
 
     if limit is None:
