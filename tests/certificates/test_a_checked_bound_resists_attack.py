@@ -22,7 +22,7 @@ from intermit.optim.bounds.prove import BranchAndBound
 from intermit.optim.bounds.separation import Target, proved_separation
 from intermit.optim.bounds.travel import WindowTravel, least_peak
 from intermit.optim.norms import Euclidean, LargestComponent
-from intermit.optim.peak import MultiStart, minimum_peak
+from intermit.optim.peak import MultiStart, Refinement, minimum_peak
 from intermit.optim.problem import Terminal, TransferProblem, quaternion_from_axis_angle
 from intermit.verify import checker
 from intermit.verify.certificates import certificate_text
@@ -35,6 +35,8 @@ WINDOW = PiecewisePolynomial(
 WITNESS = ("certificates", 0, "witness")
 PROOF = (*WITNESS, "separations", 0)
 BULK = 200
+COARSE = Refinement(mesh_gap=1e-2)
+"""Any transfer flown will do: its peak is above the optimum's."""
 
 
 def problem(norm):
@@ -136,7 +138,9 @@ def test_every_mutant_is_refused_or_true(document):
         if path[0] == "certificates":
             assert claim <= original
         else:
-            answer = minimum_peak(stated_problem(mutant), search=MultiStart(starts=1, seed=1))
+            answer = minimum_peak(
+                stated_problem(mutant), search=MultiStart(starts=1, seed=1), refinement=COARSE
+            )
             assert answer.history is None or float(claim) <= answer.peak * (1 + 1e-7), path
     assert passed > 0
 
