@@ -77,6 +77,9 @@ def answer(record: Record) -> str:
     claims = tuple(c for g in groups(record) for c in g.claims)
     parts = [f"{count} {verdict}" for verdict, count in counted(claims)]
     if not parts:
+        said = record.document.get("outcome", {}).get("sentence", "")
+        if said:
+            return str(said)
         summaries = (record.sections.get(key, {}).get("summary", "") for key in COLLECTIONS)
         return next((s for s in summaries if s), "No claim was asked for.")
     total = sum(count for _, count in counted(claims))
@@ -86,10 +89,7 @@ def answer(record: Record) -> str:
 def verdict_chapter(record: Record) -> Chapter:
     """Cards, then the table."""
     found = groups(record)
-    said = record.document.get("outcome", {}).get("sentence", "")
-    deciding = counted(tuple(c for g in found for c in g.claims))
-    sentences = _not_proved(found) if deciding else iter([said] if said else [])
-    blocks: list[Block] = [Text(sentence) for sentence in sentences]
+    blocks: list[Block] = [Text(sentence) for sentence in _not_proved(found)]
     cards = tuple(_card(case, record) for case in record.sections.get("cases", ()))
     if cards:
         blocks.append(Cards(cards))

@@ -61,6 +61,7 @@ def _data(heading: Heading, chapters: tuple[Chapter, ...]) -> dict[str, Any]:
         }
         for c in chapters
     ]
+    parts = [part for part in parts if part["blocks"]]  # a replay alone leaves nothing on paper
     if names.entries:
         rows = [[number, {"text": words(text)}] for number, text in names.entries]
         parts.append({"title": "Names in full", "blocks": [{"kind": "facts", "title": "", "rows": rows}]})
