@@ -77,11 +77,9 @@ def answer(record: Record) -> str:
     claims = tuple(c for g in groups(record) for c in g.claims)
     parts = [f"{count} {verdict}" for verdict, count in counted(claims)]
     if not parts:
+        summaries = [record.sections.get(key, {}).get("summary", "") for key in COLLECTIONS]
         said = record.document.get("outcome", {}).get("sentence", "")
-        if said:
-            return str(said)
-        summaries = (record.sections.get(key, {}).get("summary", "") for key in COLLECTIONS)
-        return next((s for s in summaries if s), "No claim was asked for.")
+        return next((s for s in (*summaries, said) if s), "No claim was asked for.")
     total = sum(count for _, count in counted(claims))
     return f"{plural(total, 'claim')} asked: {', '.join(parts)}."
 
