@@ -19,11 +19,13 @@ def run(
     ],
     bound: Annotated[
         bool,
-        typer.Option("--bound/--no-bound", help="Certify the lower bound of the least peak, with [optimum]."),
-    ] = True,
+        typer.Option("--bound", help="Certify the lower bound of the [optimum] table's least peak too."),
+    ] = False,
     debug: Debug = False,
 ) -> int:
-    """Write the certificates of everything about a scenario that could be proved.
+    """Write the certificates of everything about a schedule and its laws that could be proved.
+
+    The lower bound of the least peak takes longer than all the rest, and is written on demand.
 
     The file can be checked with `intermit recheck FILE`, or by the checker alone, which needs
     nothing but Python: python -I -S checker.py FILE.
@@ -31,6 +33,7 @@ def run(
     del debug
     from ..scenario import load_scenario
     from ..study.certify import certify
+    from ..study.lower_bounds import asks_for_optimum
     from ..verify.lyapunov import certificates_of
     from .console import note, progress
 
@@ -48,5 +51,7 @@ def run(
             f"{'certified' if held else 'no certificate':15}{claim.verdict.value:10}{subject}: {claim.title}"
         )
     typer.echo(f"{len(result.certificates)} certificates in {output}")
+    if not bound and asks_for_optimum(loaded):
+        note("the lower bound of the least peak is not among them: add --bound")
     note(f"{perf_counter() - began:.1f} s")
     return ExitCode.HOLDS

@@ -52,7 +52,7 @@ class Certification:
         return certificate_text(self.certificates)
 
 
-def certify(scenario: Scenario, progress: Progress, *, bound: bool = True) -> Certification:
+def certify(scenario: Scenario, progress: Progress, *, bound: bool = False) -> Certification:
     """Decide the claims of a scenario by exact means and collect their certificates.
 
     With `bound`, a scenario with an [optimum] table gets the lower bound of its least peak too.

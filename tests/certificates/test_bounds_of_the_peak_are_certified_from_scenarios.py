@@ -54,7 +54,7 @@ def kinds(file):
 def certified(tmp_path_factory):
     folder = tmp_path_factory.mktemp("bounds")
     toml, file = scenario(folder), folder / "s.json"
-    assert run(["certify", str(toml), "-o", str(file)]) == 0
+    assert run(["certify", str(toml), "--bound", "-o", str(file)]) == 0
     return toml, file
 
 
@@ -85,7 +85,7 @@ def test_another_transfer_is_told_apart(certified, tmp_path, capsys, change):
 
 
 def test_without_an_optimum_or_by_wish_there_is_none(tmp_path, capsys):
-    for options, optimum in (([], ""), (["--no-bound"], OPTIMUM)):
+    for options, optimum in ((["--bound"], ""), ([], OPTIMUM)):
         file = tmp_path / "n.json"
         assert run(["certify", str(scenario(tmp_path, optimum=optimum)), "-o", str(file), *options]) == 0
         assert "peak-lower-bound" not in kinds(file)
@@ -94,7 +94,7 @@ def test_without_an_optimum_or_by_wish_there_is_none(tmp_path, capsys):
 
 def test_a_bound_speaks_of_the_inertia_as_stated(tmp_path, capsys):
     toml, file = scenario(tmp_path, tolerance="inertia_tolerance = 0.01"), tmp_path / "t.json"
-    assert run(["certify", str(toml), "-o", str(file)]) == 0
+    assert run(["certify", str(toml), "--bound", "-o", str(file)]) == 0
     assert run(["recheck", str(file), "--scenario", str(toml)]) == 0
     assert "EQUAL" in capsys.readouterr().out
 
