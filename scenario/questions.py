@@ -116,8 +116,8 @@ class ReportTable(Table):
     """[report]: what a report holds beside check, optimum and comparison.
 
     `audit`: the audit of the paper's printed equations. `front`: settling times, s, of a front of peak
-    torque against settling time (default: no front), in the norm `front_norm`, each law searched with
-    `front_evaluations` simulated candidates at each time.
+    torque against settling time (default: no front), in the norm `front_norm`, each law of `front_laws`
+    (default: all) searched with `front_evaluations` simulated candidates at each time.
     """
 
     audit: StrictBool = False

@@ -150,10 +150,32 @@ def build_scenario(file: ScenarioFile, document: Document) -> Scenario:
         compare=file.compare,
         tune=file.tune,
         study=file.study,
-        report=file.report,
+        report=_report(file.report, document, choices),
         warnings=warnings,
         sha256=fingerprint(file, _attachments(file, document, choices)),
     )
+
+
+def _report(report: ReportTable, document: Document, choices: tuple[LawChoice, ...]) -> ReportTable:
+    """Hold the front's laws against the laws; a file that gives other laws than the [report] it inherits
+    keeps those of the front that it still has.
+
+    Raises
+    ------
+    ScenarioError
+        If [report] names a law that its own file, or one it extends, does not have.
+    """
+    labels = [choice.label for choice in choices]
+    kept = tuple(label for label in report.front_laws if label in labels)
+    if kept == report.front_laws:
+        return report
+    if document.origin("law") != document.path or document.origin("report") == document.path:
+        missing = next(label for label in report.front_laws if label not in labels)
+        known = ", ".join(map(quote, labels)) or "none"
+        raise ScenarioError(
+            document.where("report.front_laws"), f"has no law labelled {quote(missing)} (it has {known})"
+        )
+    return report.model_copy(update={"front_laws": kept, "front": report.front if kept else ()})
 
 
 def _attachments(file: ScenarioFile, document: Document, choices: tuple[LawChoice, ...]) -> dict[str, Path]:

@@ -60,8 +60,6 @@ def run_report(
     options = options if options is not None else ReportOptions()
     tell = progress if progress is not None else _silent
     command = f"intermit report {scenario.path.name}"
-    for label in scenario.report.front_laws:
-        scenario.law(label)  # known before anything is run
     check = run_check(scenario, options.check, _part(tell, 0.0, 0.4))
     if checked is not None:
         checked(check)

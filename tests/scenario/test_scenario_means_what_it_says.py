@@ -92,6 +92,23 @@ def test_extends_replaces_whole_tables_but_merges_defaults(workshop):
     assert len(scenario.schedule.windows) == 1
 
 
+def test_other_laws_leave_the_front_those_it_still_has(workshop):
+    laws = 'type = "persistence-filter"\nlambda = 0.5\nR0 = 1\nlabel = "{}"'
+    front = 'front = [20]\nfront_laws = ["first"]'
+    workshop.write(name="base.toml", law=laws.format("first"), report=front)
+    path = workshop.folder / "child.toml"
+    for label, kept in (("first", ("first",)), ("second", ())):
+        path.write_text(f'extends = "base.toml"\n[[law]]\n{laws.format(label)}\n')
+        report = load_scenario(path).report
+        assert report.front_laws == kept
+        assert bool(report.front) == bool(kept)
+    wrong = "report.front_laws: has no law labelled 'first'"
+    assert wrong in workshop.complaint(law=laws.format("second"), report=front)
+    path.write_text(f'extends = "base.toml"\n[[law]]\n{laws.format("second")}\n[report]\n{front}\n')
+    with pytest.raises(ScenarioError, match="has no law labelled 'first'"):
+        load_scenario(path)
+
+
 def test_errors_name_the_file_that_holds_the_key(workshop):
     workshop.write(name="base.toml", initial="quaternion = [1, 1, 0, 0]")
     path = workshop.folder / "child.toml"

@@ -56,6 +56,23 @@ def test_a_scenario_becomes_a_report_and_the_record_the_same_again(
     assert (out / "thesis.tex").read_text(encoding="utf-8") == "mine"
 
 
+@pytest.mark.slow
+def test_a_report_holds_the_front_and_the_audit_it_asks_for(
+    intermit: Run, write_scenario: Callable[..., Path], tmp_path: Path
+) -> None:
+    law = '[[law]]\ntype = "persistence-filter"\nlabel = "filter"\n'
+    scenario = write_scenario(
+        f'{law}[report]\naudit = true\nfront = [36]\nfront_laws = ["filter"]\nfront_evaluations = 60\n'
+    )
+    options = ("--no-optimum", "--no-compare", "--no-margins")
+    for further, expected in (((), True), (("--no-front", "--no-audit"), False)):
+        out = tmp_path / str(expected)
+        code, _, said = intermit("report", scenario, "-o", out, *options, *further)
+        assert code == 0, said
+        sections = json.loads((out / "results.json").read_text(encoding="utf-8"))["sections"]
+        assert [bool(sections.get(name)) for name in ("front", "audit")] == [expected, expected]
+
+
 def test_what_cannot_be_reported_is_refused_in_one_line(
     intermit: Run, write_scenario: Callable[..., Path], tmp_path: Path
 ) -> None:
