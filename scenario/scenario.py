@@ -163,13 +163,13 @@ def _report(report: ReportTable, document: Document, choices: tuple[LawChoice, .
     Raises
     ------
     ScenarioError
-        If [report] names a law that its own file, or one it extends, does not have.
+        If the file that holds [report] names a law that it does not have.
     """
     labels = [choice.label for choice in choices]
     kept = tuple(label for label in report.front_laws if label in labels)
     if kept == report.front_laws:
         return report
-    if document.origin("law") != document.path or document.origin("report") == document.path:
+    if document.origin("report") in (document.path, document.origin("law")):
         missing = next(label for label in report.front_laws if label not in labels)
         known = ", ".join(map(quote, labels)) or "none"
         raise ScenarioError(
