@@ -19,7 +19,7 @@ from flint import arb, arb_series, ctx
 
 from ...models.closed_loop import INERTIA_ENTRIES, ClosedLoop, close_loop
 from ...models.laws import Law
-from ...models.lowering import FIELD, Program, evaluate, shared, walk
+from ...models.lowering import FIELD, Program, UnknownOperationError, evaluate, shared, walk
 from ...models.rigid_body import RigidBody
 from ...models.schedule import Schedule
 from ...models.schedule.polynomial import derivative
@@ -137,7 +137,7 @@ class EnclosedRun:
             box = [x + arb(0, SLACK * (1e-6 + float(x.rad()))) for x in reached]
             try:
                 rests = [own[ORDER] for own in self._coefficients(phase, box, tau + during, ORDER)]
-            except (ValueError, ZeroDivisionError):  # the box reaches a pole
+            except NoEnclosureError:  # the box reaches a pole
                 step /= 2
                 continue
             held = [x + rest * during**ORDER for x, rest in zip(reached, rests, strict=True)]
@@ -153,16 +153,29 @@ class EnclosedRun:
         raise NoEnclosureError(f"no step is short enough at t = {float(tau + phase.origin):g} s")
 
     def _coefficients(self, phase: Phase, state: Balls, tau: Any, highest: int) -> list[Balls]:
-        """Taylor coefficients 0 to `highest` of the solution through a box at local time tau."""
+        """Taylor coefficients 0 to `highest` of the solution through a box at local time tau.
+
+        Raises
+        ------
+        NoEnclosureError
+            If the box reaches a pole or a branch point of the state rate.
+        """
         found: list[Balls] = [[x] for x in state]
         for order in range(1, highest + 1):
             series = [arb_series(list(own), prec=order) for own in found]
             time = _time_series(phase, tau, order)
-            (rates,) = evaluate(self._rates, SERIES, [series, time, *self._constants], _constant)
+            try:
+                (rates,) = evaluate(self._rates, SERIES, [series, time, *self._constants], _constant)
+            except UnknownOperationError:
+                raise
+            except (ValueError, ZeroDivisionError):
+                raise NoEnclosureError("the state rate has a pole here") from None
             for own, rate in zip(found, rates, strict=True):
                 if rate.prec < order:
                     raise NoEnclosureError("a series was cut short")
                 own.append(rate[order - 1] / order)
+        if not all(x.is_finite() for own in found for x in own):
+            raise NoEnclosureError("the state rate has no series here")
         return found
 
 
