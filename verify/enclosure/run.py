@@ -169,7 +169,7 @@ class EnclosedRun:
             except UnknownOperationError:
                 raise
             except (ValueError, ZeroDivisionError):
-                raise NoEnclosureError("the state rate has a pole here") from None
+                raise NoEnclosureError("the state rate has no series here") from None
             for own, rate in zip(found, rates, strict=True):
                 if rate.prec < order:
                     raise NoEnclosureError("a series was cut short")
