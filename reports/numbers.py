@@ -27,7 +27,7 @@ BOUND_DIGITS = 5
 """Digits of a one-sided bound: true at any length, and rounding it the safe way costs less than 1e-4."""
 MINUS = "\u2212"
 MISSING = "\u2013"
-ROOT = re.compile(r"([A-Za-z]+)\^1/2(?![0-9])")
+ROOT = re.compile(r"(?<![A-Za-z])([A-Za-z]+)\^1/2(?![0-9])")
 """A unit's square root, as records write it."""
 _EXACT = Context(prec=400)
 

@@ -26,7 +26,7 @@ def visible(text: str) -> str:
 
     Newline and tab stay; bidirectional controls are shown as what they are.
     """
-    return "".join(_picture(c) for c in text.replace("\r\n", "\n"))
+    return text.replace("\r\n", "\n").translate(_PICTURES)
 
 
 _BIDIRECTIONAL = {"\u202a": "LRE", "\u202b": "RLE", "\u202c": "PDF", "\u202d": "LRO", "\u202e": "RLO"} | {
@@ -38,20 +38,12 @@ _BIDIRECTIONAL = {"\u202a": "LRE", "\u202b": "RLE", "\u202c": "PDF", "\u202d": "
     "\u200f": "RLM",
 }
 
-
-def _picture(c: str) -> str:
-    code = ord(c)
-    if c in "\n\t":
-        return c
-    if code < 0x20:
-        return chr(0x2400 + code)
-    if code == 0x7F:
-        return "\u2421"
-    if c in _BIDIRECTIONAL:
-        return f"‹{_BIDIRECTIONAL[c]}›"
-    if 0x80 <= code < 0xA0 or c in "\ufffe\uffff\u2028\u2029\u0085":
-        return "\ufffd"
-    return c
+_PICTURES = str.maketrans(
+    {chr(code): chr(0x2400 + code) for code in range(0x20) if chr(code) not in "\n\t"}
+    | {"\x7f": "\u2421"}
+    | {c: f"‹{name}›" for c, name in _BIDIRECTIONAL.items()}
+    | dict.fromkeys([*map(chr, range(0x80, 0xA0)), *"\ufffe\uffff\u2028\u2029"], "\ufffd")
+)
 
 
 def plural(count: int, word: str) -> str:
