@@ -16,8 +16,9 @@ from outside_tools import need
 from respoken import respoken
 
 
-def kit(record: Record, folder: Path) -> dict[str, bytes]:
-    files = {n.removeprefix("paper/"): d for n, d in report_files(record).items() if n.startswith("paper/")}
+def kit(report: dict[str, bytes], folder: Path) -> dict[str, bytes]:
+    """The kit of a report, written to a folder."""
+    files = {n.removeprefix("paper/"): d for n, d in report.items() if n.startswith("paper/")}
     for name, data in files.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_bytes(data)
@@ -33,8 +34,8 @@ def compiled(folder: Path) -> str:
     return log
 
 
-def test_the_kit_is_ascii_and_names_only_common_packages(record: Record, tmp_path: Path) -> None:
-    files = kit(record, tmp_path)
+def test_the_kit_is_ascii_and_names_only_common_packages(report: dict[str, bytes], tmp_path: Path) -> None:
+    files = kit(report, tmp_path)
     used = set(re.findall(rb"\\usepackage(?:\[[^]]*\])?\{(\w+)\}", b"".join(files.values())))
     common = {
         b"fontenc",
@@ -59,9 +60,9 @@ def test_the_kit_is_ascii_and_names_only_common_packages(record: Record, tmp_pat
 
 @pytest.mark.latex
 @pytest.mark.slow
-def test_pdflatex_takes_it(record: Record, tmp_path: Path) -> None:
+def test_pdflatex_takes_it(report: dict[str, bytes], tmp_path: Path) -> None:
     need("pdflatex")
-    kit(record, tmp_path)
+    kit(report, tmp_path)
     log = compiled(tmp_path)
     assert "undefined" not in log.lower().replace("undefined references", "")
 
@@ -70,7 +71,7 @@ def test_pdflatex_takes_it(record: Record, tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_hostile_names_are_set_and_do_nothing(record: Record, tmp_path: Path) -> None:
     need("pdflatex")
-    kit(respoken(record, *HOSTILE.values()), tmp_path)
+    kit(report_files(respoken(record, *HOSTILE.values())), tmp_path)
     log = compiled(tmp_path)
     assert "/etc/passwd" not in re.findall(r"\((/[^\s()]+)", log)
     plain = subprocess.run(

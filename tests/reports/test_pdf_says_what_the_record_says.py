@@ -142,8 +142,8 @@ def test_an_east_asian_font_is_used_where_it_is_installed() -> None:
         assert printable("漢") == "漢"
 
 
-def test_every_file_of_the_report_repeats() -> None:
-    one, two = report_files(make()), report_files(make())
+def test_every_file_of_the_report_repeats(report: dict[str, bytes]) -> None:
+    one, two = report, report_files(make())
     assert one.keys() == two.keys()
     assert [name for name in one if one[name] != two[name]] == []
 
