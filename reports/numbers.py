@@ -121,6 +121,9 @@ def _between(low: float, high: float, most: int, unit: str, rigorous: bool, note
     shared = _shared(low, high, most) if rigorous else _central(low, high, most)
     if shared is not None:
         mantissa, exponent = _layout(shared, shared)
+        if len(shared.as_tuple().digits) <= shared.adjusted() and not _is_tight(low, high):
+            # "1.0e2", for the last zero of "100" would be taken for a digit that is known
+            mantissa, exponent = _power(shared)
         return Written("", _plain(mantissa(shared)), "", exponent, unit, rigorous, note)
     largest = max(abs(low), abs(high))
     digits = min(most, 2 + max(0, math.floor(math.log10(largest)) - math.floor(math.log10(high - low))))
@@ -137,8 +140,13 @@ def _shared(low: float, high: float, most: int) -> Decimal | None:
     for digits in range(most, 1, -1):
         a, b = (_rounded(x, digits, ROUND_HALF_EVEN) for x in (low, high))
         if a == b and a != 0 and digits >= min(useful, most) - 1:
-            return a.normalize() if high - low <= 8 * math.ulp(high) else a
+            return a.normalize() if _is_tight(low, high) else a
     return None
+
+
+def _is_tight(low: float, high: float) -> bool:
+    """Whether the interval is a number that only rounding has widened."""
+    return high - low <= 8 * math.ulp(high)
 
 
 def _central(low: float, high: float, most: int) -> Decimal | None:
@@ -188,7 +196,12 @@ def _layout(low: Decimal, high: Decimal) -> tuple[Any, int]:
     """Choose fixed point between 1e-4 and 1e6, else a common power of ten."""
     largest = max(abs(low), abs(high))
     size = largest.adjusted() if largest else 0
-    exponent = 0 if -4 <= size < 6 else size
+    return _power(largest) if not -4 <= size < 6 else ((lambda d: d), 0)
+
+
+def _power(value: Decimal) -> tuple[Any, int]:
+    """Choose a power of ten."""
+    exponent = value.adjusted() if value else 0
     return (lambda d: d.scaleb(-exponent, _EXACT)), exponent
 
 

@@ -3,7 +3,7 @@
 from decimal import Decimal
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from intermit.reports.numbers import number, unit_text, write
 from intermit.reports.parts import figure_of, quantity
@@ -32,6 +32,7 @@ def test_an_upper_bound_is_never_shown_smaller_than_it_is(x: float) -> None:
 
 
 @given(finite, st.floats(min_value=1e-12, max_value=2.0))
+@example(100.0, 0.04)
 def test_the_digits_shown_hold_for_the_whole_interval(x: float, spread: float) -> None:
     low, high = x - abs(x) * spread, x + abs(x) * spread
     shown = write(quantity("q", low, high, rigorous=True))
@@ -46,6 +47,7 @@ def test_the_digits_shown_hold_for_the_whole_interval(x: float, spread: float) -
 
 
 @given(finite, st.floats(min_value=1e-12, max_value=2.0))
+@example(100.0, 0.0625)
 def test_the_last_digit_of_a_figure_is_uncertain_by_one_at_most(x: float, spread: float) -> None:
     low, high = x - abs(x) * spread, x + abs(x) * spread
     shown = write(quantity("q", low, high))
@@ -53,6 +55,12 @@ def test_the_last_digit_of_a_figure_is_uncertain_by_one_at_most(x: float, spread
         digits = value(shown.low, shown.exponent)
         last = Decimal(1).scaleb(digits.as_tuple().exponent)
         assert max(abs(digits - Decimal(low)), abs(digits - Decimal(high))) <= Decimal("1.5000001") * last
+
+
+def test_zeros_before_the_point_are_digits_too() -> None:
+    assert write(quantity("q", 93.75, 106.25)).ascii == "1.0e2"
+    assert write(quantity("q", 99.7, 100.3)).ascii == "100"
+    assert write(quantity("q", 100.0, 100.0)).ascii == "100"
 
 
 def test_an_invented_digit_would_be_noticed() -> None:
