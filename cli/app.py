@@ -10,6 +10,7 @@ from typing import Annotated
 
 import typer
 
+from ..study.threads import one_thread
 from .exit_codes import HELP, ExitCode
 from .options import Debug, InputError, debugging
 
@@ -78,6 +79,7 @@ def _version(asked: bool) -> None:
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line and exit."""
+    one_thread()
     sys.exit(run(sys.argv[1:] if arguments is None else arguments))
 
 

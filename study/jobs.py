@@ -6,7 +6,6 @@ too: the others take from the same list whatever is next.
 
 from __future__ import annotations
 
-import os
 import signal
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -22,13 +21,12 @@ from typing import Any, final
 from ..scenario import LawChoice, Scenario
 from .case import CaseOptions, Decided, Findings, decide, findings, margins, samples
 from .run import Seen
+from .threads import one_thread_each
 
 Progress = Callable[[str, float], None]
 
 START = 0.1
 """Share of a check that is done before the jobs begin."""
-THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
-"""What a BLAS reads when it is loaded; a user's own setting is kept."""
 PARTS: dict[str, Callable[..., Any]] = {"proofs": decide, "margins": margins, "samples": samples}
 """Parts of a law's job, in the order in which they are best begun: the longer ones first."""
 PATIENCE = 0.5
@@ -166,18 +164,6 @@ def crew(jobs: int, workers: int, tell: Progress) -> Iterator[Crew]:
             pool = get_context("spawn").Pool(others, initializer=ignore_interrupt)
         with pool:
             yield Crew(pool, others, jobs, tell)
-
-
-@contextmanager
-def one_thread_each() -> Iterator[None]:
-    """Start new processes with one BLAS thread: on small matrices more only get in each other's way."""
-    missing = [name for name in THREADS if name not in os.environ]
-    os.environ.update(dict.fromkeys(missing, "1"))
-    try:
-        yield
-    finally:
-        for name in missing:
-            del os.environ[name]
 
 
 @contextmanager

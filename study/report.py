@@ -14,7 +14,8 @@ from ..reports.values import thaw
 from ..scenario import Scenario
 from .check import CheckOptions, CheckStudy, run_check
 from .check_record import check_record
-from .jobs import ignore_interrupt, one_thread_each
+from .jobs import ignore_interrupt
+from .threads import one_thread_each
 
 Progress = Callable[[str, float], None]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from types import SimpleNamespace
@@ -82,6 +83,16 @@ def test_message_stays_on_one_line(
 def test_unknown_option_is_bad_input(capfd: pytest.CaptureFixture[str]) -> None:
     assert frame.run(["--nonsense"]) == ExitCode.BAD_INPUT
     assert capfd.readouterr().err.count("\n") == 1
+
+
+def test_the_command_line_keeps_to_one_blas_thread_unless_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(os, "environ", {**os.environ, "OMP_NUM_THREADS": "3"})
+    monkeypatch.delenv("OPENBLAS_NUM_THREADS", raising=False)
+    monkeypatch.setattr(frame, "run", lambda _: 0)
+    with pytest.raises(SystemExit, match="0"):
+        frame.main([])
+    assert os.environ["OPENBLAS_NUM_THREADS"] == "1"
+    assert os.environ["OMP_NUM_THREADS"] == "3"
 
 
 def test_help_and_version_load_nothing_heavy() -> None:
