@@ -43,7 +43,7 @@ def refuted_limit(
         return claim
     instant = Fraction(at).limit_denominator(10**6)
     try:
-        torque = EnclosedRun(q.law, q.body, q.schedule, start).torque_at(instant)
+        torque = EnclosedRun(q.law, q.body, start).torque_at(q.schedule, instant)
     except (NoEnclosureError, UnknownOperationError):
         return claim
     size = _size(torque, q.torque_norm)

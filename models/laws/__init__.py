@@ -2,6 +2,7 @@
 
 from .adaptive_scaling import AdaptiveScaling, AdaptiveScalingAsPrinted
 from .base import Control, ControllerState, Expression, Law, PlantSymbols, TimeSymbols
+from .free_motion import FreeMotion
 from .persistence_filter import PersistenceFilter, PersistenceFilterAsPrinted
 from .quaternion_pd import QuaternionPD
 
@@ -23,6 +24,7 @@ __all__ = [
     "Control",
     "ControllerState",
     "Expression",
+    "FreeMotion",
     "Law",
     "PersistenceFilter",
     "PersistenceFilterAsPrinted",

@@ -45,7 +45,7 @@ def simulated(law: Law, start: ExactStart, t: F) -> np.ndarray:
 def test_the_enclosure_holds_an_independent_simulation(law, start):
     """The simulation's own error, 1e-10 over these seconds, is all that may lie outside."""
     for t in (F("0.7"), F("2.9"), F("8.5")):
-        torque = EnclosedRun(law, J1, SCHEDULE, start).torque_at(t)
+        torque = EnclosedRun(law, J1, start).torque_at(SCHEDULE, t)
         for ball, value in zip(torque, simulated(law, start, t), strict=True):
             assert float(ball.rad()) < 1e-3
             assert abs(float(ball.mid()) - value) <= float(ball.rad()) + 1e-9
@@ -54,9 +54,9 @@ def test_the_enclosure_holds_an_independent_simulation(law, start):
 def test_a_coarse_enclosure_holds_a_fine_one(monkeypatch):
     """Both hold the same point, so they overlap; a wrong remainder would part them."""
     monkeypatch.setattr(enclosed, "LOCAL_ERROR", 1e-9)
-    coarse = EnclosedRun(ADAPTIVE, J1, SCHEDULE, TUMBLING).torque_at(F(3))
+    coarse = EnclosedRun(ADAPTIVE, J1, TUMBLING).torque_at(SCHEDULE, F(3))
     monkeypatch.setattr(enclosed, "LOCAL_ERROR", 1e-18)
-    fine = EnclosedRun(ADAPTIVE, J1, SCHEDULE, TUMBLING).torque_at(F(3))
+    fine = EnclosedRun(ADAPTIVE, J1, TUMBLING).torque_at(SCHEDULE, F(3))
     for wide, narrow in zip(coarse, fine, strict=True):
         assert float(narrow.rad()) < 1e-6 * float(wide.rad())
         assert wide.contains(narrow.mid())
@@ -65,7 +65,7 @@ def test_a_coarse_enclosure_holds_a_fine_one(monkeypatch):
 def test_the_check_above_can_fail(monkeypatch):
     """Without its remainder a coarse enclosure parts from the truth."""
     monkeypatch.setattr(enclosed, "LOCAL_ERROR", 1e-18)
-    fine = EnclosedRun(ADAPTIVE, J1, SCHEDULE, TUMBLING).torque_at(F(3))
+    fine = EnclosedRun(ADAPTIVE, J1, TUMBLING).torque_at(SCHEDULE, F(3))
     monkeypatch.setattr(enclosed, "LOCAL_ERROR", 1e-6)
     own = EnclosedRun._coefficients
 
@@ -74,7 +74,7 @@ def test_the_check_above_can_fail(monkeypatch):
         return [[*row[:-1], row[-1] * 0] for row in found] if highest == enclosed.ORDER else found
 
     monkeypatch.setattr(EnclosedRun, "_coefficients", without_remainder)
-    coarse = EnclosedRun(ADAPTIVE, J1, SCHEDULE, TUMBLING).torque_at(F(3))
+    coarse = EnclosedRun(ADAPTIVE, J1, TUMBLING).torque_at(SCHEDULE, F(3))
     assert not any(wide.contains(narrow.mid()) for wide, narrow in zip(coarse, fine, strict=True))
 
 
@@ -98,7 +98,7 @@ class Clipped(Law):
 
 def test_a_law_without_a_series_is_refused_by_name():
     with pytest.raises(UnknownOperationError, match="fmin"):
-        EnclosedRun(Clipped(F(1)), J1, SCHEDULE, START).torque_at(F(1))
+        EnclosedRun(Clipped(F(1)), J1, START).torque_at(SCHEDULE, F(1))
 
 
 @dataclass(frozen=True)
@@ -122,13 +122,13 @@ class Pointed(Law):
 def test_a_start_at_a_pole_is_given_up_not_crashed_on():
     target = ExactStart((F(1), F(0), F(0), F(0)), (F("0.1"), F(0), F(0)))
     with pytest.raises(NoEnclosureError):
-        EnclosedRun(Pointed(F(1)), J1, SCHEDULE, target).torque_at(F(1))
+        EnclosedRun(Pointed(F(1)), J1, target).torque_at(SCHEDULE, F(1))
 
 
 def test_an_enclosure_that_grows_too_wide_is_given_up(monkeypatch):
     monkeypatch.setattr(enclosed, "WIDEST", 1e-14)
     with pytest.raises(NoEnclosureError, match="too wide"):
-        EnclosedRun(PERSISTENCE, J1, SCHEDULE, START).torque_at(F(3))
+        EnclosedRun(PERSISTENCE, J1, START).torque_at(SCHEDULE, F(3))
 
 
 OPEN = Claim("torque.limit", "", "", Verdict.UNDECIDED, reason="too cautious", next_step="raise the limit")

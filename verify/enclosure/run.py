@@ -1,4 +1,4 @@
-"""One run enclosed: the state at a given time, in balls that certainly hold it.
+"""One run enclosed: the state at given times, in balls that certainly hold it.
 
 Interval Taylor steps in ball arithmetic (Moore 1966, ch. 8; Nedialkov, Jackson & Corliss 1999): the
 coefficients of the solution come from the closed loop's own expressions, evaluated on truncated
@@ -67,11 +67,11 @@ class ExactStart:
 
 @final
 class EnclosedRun:
-    """The run of a law from an exact start, carried forward once.
+    """The run of a law from an exact start, carried forward phase by phase.
 
     Parameters
     ----------
-    law, body, schedule : the closed loop, without saturation, at the nominal inertia
+    law, body : the closed loop, without saturation, at the nominal inertia
     start : state at t = 0; controller states begin at the law's own values
 
     Raises
@@ -80,8 +80,8 @@ class EnclosedRun:
         If the law uses an operation that has no series here.
     """
 
-    def __init__(self, law: Law, body: RigidBody, schedule: Schedule, start: ExactStart) -> None:
-        self._law, self._schedule = law, schedule
+    def __init__(self, law: Law, body: RigidBody, start: ExactStart) -> None:
+        self._law = law
         ctx.cap = max(ctx.cap, ORDER + 1)  # no series is cut short
         loop = close_loop(law)
         self._rates, self._torque = _programs(loop)
@@ -91,7 +91,12 @@ class EnclosedRun:
         exact = (*start.quaternion, *start.rate, *(s.initial for s in law.controller_states))
         self._state: Balls = [ball(x) for x in exact]
 
-    def torque_at(self, until: Fraction) -> Balls:
+    @property
+    def state(self) -> Balls:
+        """State at the end of the last phase crossed, in the order of `ClosedLoop.state`."""
+        return list(self._state)
+
+    def torque_at(self, schedule: Schedule, until: Fraction) -> Balls:
         """Applied torque g u at a time > 0, s, as three balls, N m; may be asked once.
 
         Raises
@@ -100,18 +105,24 @@ class EnclosedRun:
             If the state could not be enclosed up to then.
         """
         phase = None
-        for phase in phases_between(self._schedule, self._law, Fraction(0), until):
-            if phase.resets:
-                raise NoEnclosureError(f"the law decides anew at t = {float(phase.start):g} s")
-            self._cross(phase)
+        for phase in phases_between(schedule, self._law, Fraction(0), until):
+            self.cross(phase)
         assert phase is not None
         time = _time_series(phase, ball(until - phase.origin), 1)
         state = [arb_series([x], prec=1) for x in self._state]
         (torque,) = evaluate(self._torque, SERIES, [state, time, *self._constants], _constant)
         return [x[0] for x in torque]
 
-    def _cross(self, phase: Phase) -> None:
-        """Carry the state to the end of a phase."""
+    def cross(self, phase: Phase) -> None:
+        """Carry the state from the start of a phase, where the last one ended, to its end.
+
+        Raises
+        ------
+        NoEnclosureError
+            If the state could not be enclosed up to there.
+        """
+        if phase.resets:
+            raise NoEnclosureError(f"the law decides anew at t = {float(phase.start):g} s")
         now, step = phase.start, phase.end - phase.start
         for _ in range(MOST_STEPS):
             tau = ball(now - phase.origin)
