@@ -66,11 +66,12 @@ class PathOptions:
         """Return options that cost little."""
         return replace(self, degree=min(self.degree or 4, 4), tolerance=max(self.tolerance, 2e-3))
 
-    def degree_for(self, arc_sum: float) -> int:
-        """Degree that pays for a region of that arc sum (rad)."""
+    def degree_for(self, arc_sum: float, *, smooth: bool) -> int:
+        """Degree that pays for a region of that arc sum (rad), for a ball of momenta or a set with edges."""
         if self.degree is not None:
             return self.degree
-        return 5 if arc_sum < 1.6 else 6 if arc_sum < 2.5 else 7
+        first, second = (1.6, 2.5) if smooth else (2.2, 3.5)
+        return 5 if arc_sum < first else 6 if arc_sum < second else 7
 
 
 @final
@@ -153,22 +154,28 @@ def _nearest(
     guess = highest
     program: PotentialProgram | None = None
 
+    smooth = isinstance(momenta, UnitBall)
+
+    def degree_for(travel: float) -> int:
+        return options.degree_for(travel * speed / 2, smooth=smooth)
+
     def made(degree: int) -> PotentialProgram:
         # Sets with edges gain least from a third proof, and theirs cost most.
-        fit = Fit(degree=degree, proofs=3 if isinstance(momenta, UnitBall) else 2)
+        fit = Fit(degree=degree, proofs=3 if smooth else 2)
         return potential_program(body, start, target, momenta, guess=guess, fit=fit)
 
     if limit is None:
+        value = 0.0
         for degree in (4, None):
-            program = made(degree or options.degree_for(guess * speed / 2))
-            value = program.solve(_ROUGH)[1]
+            program = made(degree or degree_for(guess))
+            value = max(value, program.solve(_ROUGH)[1])  # a higher degree may end its rounds early
             if degree is None and 0.96 * guess < value < 0.998 * guess:
                 break
             guess = min(max(1.015 * value, least), highest)
             program = None
     best: Separation | None = None
     prover = BranchAndBound(tolerance=options.tolerance)
-    degree = options.degree_for(guess * speed / 2)
+    degree = degree_for(guess)
     for attempt in range(2):
         program = program or made(degree if limit is None or attempt else min(degree, 5))
         found = separation(body, start, target, program, prover, enough=np.inf if limit is None else limit)
@@ -181,6 +188,6 @@ def _nearest(
             continue
         if found.travel < found.reach or guess >= highest:
             break
-        degree = options.degree_for(guess * speed / 2)
+        degree = degree_for(guess)
         guess = min(1.015 * float(found.difference) / found.supremum.value, highest)
     return best
