@@ -25,13 +25,13 @@ import re
 import sys
 from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
 from math import comb, isqrt, lcm
 from operator import mul
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 FORMAT = "intermit-certificate"
 VERSION = "1"
@@ -2234,7 +2234,8 @@ def require_change(M: Matrix, radius: Fraction, side: str, r: Fraction, witness:
 #   path        travel = int N dt <= N0 s + Nf (tf - s) + p A(s) for any instant s, and it must be at
 #               least D: by the rotation angle, or by a potential phi of the modified Rodrigues vector
 #               x of m^-1 q with max over K of |phi'| <= rate wherever a path of travel below D can
-#               pass, a spherical ellipse {F >= 0, |x| <= outer}.
+#               pass, a spherical ellipse {F >= 0, |x| <= outer}. The way may be counted from where a
+#               coast leads; see `Departure`.
 #   components  (cube, from rest to rest) K is cut down by |H_i| <= beta_i; see `require_components`.
 # Maxima over K go by multipliers: G <= sum l_k M_k gives H'G H <= sum l_k L_k.
 # Polynomials live on boxes as integers in units of 2^-PEAK_BITS; every rounding is counted. Floats
@@ -2244,11 +2245,13 @@ PEAK_BITS = 100
 PEAK_BOXES = 150_000
 PEAK_CELLS = 96
 PEAK_DEGREE = 12
+PEAK_COAST_BITS, PEAK_COAST_ORDER, PEAK_COAST_STEPS, PEAK_COAST_CELLS = 192, 40, 400, 32
 Solid = list[list[list[int]]]
 """Coefficients [i][j][k], i + j + k <= degree, of a polynomial of t in [-1, 1]^3."""
 Cubic = dict[tuple[int, int, int], Fraction]
 Local = tuple[list[int], int]
 """Of a polynomial: constant, slopes 1 to 3, squares 1 to 3, products 23, 13, 12; and a bound of the rest."""
+Number = TypeVar("Number", int, Fraction)
 Six = list[float]
 """Symmetric 3 by 3 matrix: 11, 12, 13, 22, 23, 33."""
 
@@ -2340,6 +2343,15 @@ class PeakWindow:
         inner = self._at(s, 1)
         return inner + self.first[-1] * (self.knots[-1] - s) - (self.second[-1] - inner)
 
+    def opened(self, s: Fraction) -> Fraction:
+        """int_0^s up."""
+        return self._at(s, 1)
+
+    def moment(self, a: Fraction, b: Fraction, about: Fraction) -> Fraction:
+        """int_a^b w(t) (about - t) dt, by parts."""
+        ends = self._at(b, 0) * (about - b) - self._at(a, 0) * (about - a)
+        return ends + self._at(b, 1) - self._at(a, 1)
+
     def cells(self, until: Fraction) -> Iterator[tuple[Fraction, Fraction]]:
         """Cut [0, until]: on each cell int up, and a bound of (int_0^t up^2)/up, both rounded up."""
         inside = {k for k in self.knots if 0 < k < until}
@@ -2358,7 +2370,7 @@ def rounded_up(x: Fraction) -> Fraction:
     return Fraction(math.ceil(x * 2**80), 2**80)
 
 
-def quaternion_times(a: Vector, b: Vector) -> Vector:
+def quaternion_times(a: Sequence[Number], b: Sequence[Number]) -> list[Number]:
     """Hamilton product, scalar first."""
     return [
         a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
@@ -3055,9 +3067,187 @@ def require_path(d: Transfer, gauge: Gauge, peak: Fraction, witness: Node) -> st
     travel, s, end = (witness[name].number() for name in ("travel", "instant", "end"))
     gauge.require_rates_within(d.end_rate, end)
     start, horizon = gauge.size(d.momentum)[1], d.window.knots[-1]
-    allowed = start * s + end * (horizon - s) + peak * d.window.area(s)
+    after = Departure.read(d, gauge, witness["coast"]) if witness.has("coast") else Departure.none(d)
+    require(after.until <= s <= horizon, "the instant must lie within the transfer, after the coast")
+    area = d.window.area(s) - d.window.opened(after.until) + after.deviation
+    allowed = start * (s - after.until) + end * (horizon - s) + after.slack + peak * area
     require(allowed <= travel, "a transfer of that peak may travel enough")
-    return require_travel(d, gauge, gauge.speed(witness["speed"].vector()), travel, witness)
+    d = replace(d, attitude=after.attitude)
+    return after.words + require_travel(d, gauge, gauge.speed(witness["speed"].vector()), travel, witness)
+
+
+@dataclass(frozen=True)
+class Departure:
+    """Where the way is counted from: the start, or an attitude near C(until), where a coast leads.
+
+    C keeps the momentum H0 of the start, fixed in space. Let d be the rest of the momentum in body axes
+    and e the least travel that joins C to the attitude. Rows have the form a I + b J^-1, so that
+        N(d)' <= p w + nu N(d),        e' <= N(d) + mu e
+    with nu of d -> -(J^-1 h) x d and mu of y -> h x J^-1 y - J (J^-1 h x J^-1 y), |h| = |H0|; hence
+    e(until) <= p int w(t) u (exp(mu u) + exp(nu u))/2 dt, u = until - t. From there on the travel to the
+    target is what is left of the transfer, and `slack` joins C(until) to the attitude stated.
+    """
+
+    until: Fraction
+    attitude: Vector
+    deviation: Fraction
+    slack: Fraction
+    words: str
+
+    @classmethod
+    def none(cls, d: Transfer) -> Departure:
+        """Return the start itself."""
+        return cls(Fraction(0), d.attitude, Fraction(0), Fraction(0), "")
+
+    @classmethod
+    def read(cls, d: Transfer, gauge: Gauge, place: Node) -> Departure:
+        """Read and prove a coast."""
+        until, turn, slack = (place[name].number() for name in ("until", "turn", "slack"))
+        require(0 < until <= d.window.knots[-1], "the coast must end within the transfer")
+        attitude = place["attitude"].vector(4)
+        require_turn(*coast_attitude(d.J, d.attitude, d.momentum, until), attitude, turn)
+        gauge.require_rates_within(turn, slack)
+        mu, nu = place["growth"].vector(2)
+        require_growth(gauge, d.momentum, mu, nu)
+        deviation = Fraction(0)
+        for k in range(PEAK_COAST_CELLS):
+            a, b = (until * (k + i) / PEAK_COAST_CELLS for i in (0, 1))
+            factor = (exponential_above(mu * (until - a)) + exponential_above(nu * (until - a))) / 2
+            deviation += d.window.moment(a, b, until) * factor
+        words = f"after a coast of {show(until)} s, "
+        return cls(until, attitude, deviation, slack, words)
+
+
+def coast_attitude(J: Matrix, q: Vector, H: Vector, until: Fraction) -> tuple[Vector, Fraction]:
+    """Quaternion after free motion from q with body momentum H, and a bound of the distance from it.
+
+    In steps of the time x in [0, 1], with g = H/sigma and u = B g, B = sigma step J^-1,
+        g' = g x u,        q' = q (0, u)/2,
+    Taylor polynomials in units of 2^-PEAK_COAST_BITS. What they miss of the equations (the products
+    beyond their degree, and every rounding) is a defect; |g| and the length of a difference of
+    quaternions are conserved, so the errors grow at most as e' <= |B| (|g| + |its polynomial|) e + defect
+    and as |q's polynomial| |B| e/2 + defect.
+    """
+    one, inverse = 1 << PEAK_COAST_BITS, inverse_matrix(J)
+    size = length_interval(H)[1]
+    sigma = Fraction(2) ** _magnitude(size)
+    fastest = root_interval(sum((x * x for row in inverse for x in row), Fraction(0)))[1]
+    steps = math.ceil(8 * fastest * size * until)
+    require(steps <= PEAK_COAST_STEPS, "the coast turns too far")
+    require(1 < 2**64 * max(map(abs, q)) < 2**128, "the start quaternion is too long or too short")
+    B = [[x * sigma * until / steps for x in row] for row in inverse]
+    b, size = fastest * sigma * until / steps, size / sigma
+    g, p = ([math.floor(x * one) for x in v] for v in ([h / sigma for h in H], q))
+    off, error = Fraction(4, one), Fraction(4, one)
+    for _ in range(steps):
+        G, Q, U = coast_series(B, g, p)
+        sizes = [[Fraction(sum(map(abs, c)), one) for c in v] for v in (G, Q, U)]
+        reach, length = (sum(v, Fraction(0)) for v in sizes[:2])
+        rounded = Fraction(4 * (PEAK_COAST_ORDER + 1) ** 2, one)
+        grown = b * (size + reach)
+        require(grown <= 1, "a step of the coast is too long")
+        off += rounded * (1 + reach) + beyond(sizes[0], sizes[2])
+        off = rounded_up(off * (1 + grown + grown**2) * one) / one
+        error += rounded * (1 + length) + beyond(sizes[1], sizes[2]) + length * b * off
+        error = rounded_up(error * one) / one
+        g, p = ([sum(c) for c in zip(*v, strict=True)] for v in (G, Q))
+    return [Fraction(c, one) for c in p], error
+
+
+def coast_series(B: Matrix, g: list[int], p: list[int]) -> tuple[list[list[int]], ...]:
+    """Coefficients of g, q and u in powers of the time; each is off by at most one unit for its order."""
+    G, Q, U = [g], [p], []
+    for k in range(PEAK_COAST_ORDER + 1):
+        U.append([math.floor(x) for x in image(B, [Fraction(c) for c in G[k]])])
+        if k == PEAK_COAST_ORDER:
+            break
+        pairs = [(i, k - i) for i in range(k + 1)]
+        scale = (k + 1) << PEAK_COAST_BITS
+        turns = [vector_product(G[i], U[j]) for i, j in pairs]
+        moves = [quaternion_times(Q[i], [0, *U[j]]) for i, j in pairs]
+        G.append([sum(c) // scale for c in zip(*turns, strict=True)])
+        Q.append([sum(c) // (2 * scale) for c in zip(*moves, strict=True)])
+    return G, Q, U
+
+
+def beyond(x: Vector, y: Vector) -> Fraction:
+    """Sum of x_i y_j over i + j >= the order: bound of what a product has beyond the series."""
+    n = PEAK_COAST_ORDER
+    return sum((a * sum(y[max(n - i, 0) :], Fraction(0)) for i, a in enumerate(x)), Fraction(0))
+
+
+def require_turn(reached: Vector, radius: Fraction, q: Vector, turn: Fraction) -> None:
+    """Prove that a rotation by at most `turn` joins q to whatever is within the radius of `reached`."""
+    share = sum((a * b for a, b in zip(reached, q, strict=True)), Fraction(0))
+    square = sum((c * c for c in q), Fraction(0))
+    require(share > 0 and square > 0, "the attitude after the coast is not the one stated")
+    off = [a - share / square * b for a, b in zip(reached, q, strict=True)]
+    distance, length = length_interval(off)[1] + radius, length_interval(reached)[0] - radius
+    # The arc is at most asin(distance/length) <= (pi/2) distance/length, the rotation twice that.
+    sure = length > distance and Fraction(22, 7) * distance <= turn * length
+    require(sure, "the attitude after the coast is not proved to be the one stated")
+
+
+def require_growth(gauge: Gauge, H: Vector, mu: Fraction, nu: Fraction) -> None:
+    """Prove mu and nu of `Departure`.
+
+    A row's growth is y'M X y/(y'M y), X linear in h. Where N(y) = 1 by that row y'M y = L, and |y|^2 <= L_0:
+    it is at most L_0/L times the largest eigenvalue of S = sum h_i S_i, the symmetric part of M X. The
+    trace of S is 0, so that eigenvalue is at most sqrt(2/3) |S|_F; |S|_F^2 = h'G h with G_ij = tr S_i S_j.
+    """
+    require(mu >= 0 and nu >= 0, "growth must not be negative")
+    unit = combination([Fraction(1)] * 3, [axis_matrix(i) for i in range(3)])
+    require(gauge.rows[0] == unit and gauge.box is None, "the first row of the set must be the identity")
+    stretch, turning = [], []
+    for h in unit:
+        w = image(gauge.inverse, h)
+        columns = [image(gauge.inverse, y) for y in unit]
+        inner = [image(gauge.J, vector_product(w, c)) for c in columns]
+        ways = [vector_product(h, c) for c in columns]
+        stretch.append([[x - y for x, y in zip(a, b, strict=True)] for a, b in zip(ways, inner, strict=True)])
+        turning.append([vector_product(y, w) for y in unit])
+    square = sum((x * x for x in H), Fraction(0))
+    for M, L in zip(gauge.rows, gauge.levels, strict=True):
+        for rate, ways in ((mu, stretch), (nu, turning)):
+            parts = []
+            for columns in ways:
+                moved = [image(M, c) for c in columns]
+                parts.append([(moved[j][i] + moved[i][j]) / 2 for i in range(3) for j in range(3)])
+            require(
+                all(p[0] + p[4] + p[8] == 0 for p in parts),
+                "a row of the set is not of the form a I + b J^-1",
+            )
+            gram = [
+                [sum((x * y for x, y in zip(p, q, strict=True)), Fraction(0)) for q in parts] for p in parts
+            ]
+            level = Fraction(3, 2) * (rate * L / gauge.levels[0]) ** 2
+            gap = combination([level, -square], [unit, gram])
+            require(is_positive_semidefinite(gap), "the growth of a deviation is not proved")
+
+
+def image(A: Matrix, x: Vector) -> Vector:
+    """Return A x."""
+    return [sum((a * b for a, b in zip(row, x, strict=True)), Fraction(0)) for row in A]
+
+
+def vector_product(x: Sequence[Number], y: Sequence[Number]) -> list[Number]:
+    """Return x cross y."""
+    return [x[i - 2] * y[i - 1] - x[i - 1] * y[i - 2] for i in range(3)]
+
+
+def exponential_above(x: Fraction) -> Fraction:
+    """Upper bound of exp(x), x >= 0: the series at x/2^k <= 1/2, squared k times."""
+    require(0 <= x <= 64, "the growth of a deviation is out of bounds")
+    halvings = max(0, math.ceil(2 * x).bit_length())
+    x = rounded_up(x / 2**halvings)
+    value = term = Fraction(1)
+    for k in range(1, 24):
+        term = rounded_up(term * x / k)
+        value += term
+    value += term  # the rest is less than the last term
+    for _ in range(halvings):
+        value = rounded_up(value * value)
+    return value
 
 
 def require_travel(d: Transfer, gauge: Gauge, speed: Fraction, travel: Fraction, witness: Node) -> str:

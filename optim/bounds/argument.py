@@ -6,7 +6,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
 
+from .coast import Coast
 from .components import ComponentBounds, Widths
+from .deviation import Growth
 from .momentum_sets import MomentumSet
 from .path import PathBound
 
@@ -27,6 +29,29 @@ class MomentumArgument:
 
 @final
 @dataclass(frozen=True)
+class Departure:
+    """Where a path is counted from.
+
+    Attributes
+    ----------
+    coast : Coast
+        Free motion from the start; of no length: the start itself.
+    growth : Growth
+        What makes a deviation from it grow.
+    deviation : Fraction
+        Upper bound of the travel from where the coast leads to the attitude, per unit of the peak, s^2.
+    slack : Fraction
+        Upper bound of the travel between the attitude reached by the coast and the one written down.
+    """
+
+    coast: Coast
+    growth: Growth
+    deviation: Fraction
+    slack: Fraction
+
+
+@final
+@dataclass(frozen=True)
 class PathArgument:
     """The way to the target takes more travel than a smaller peak allows.
 
@@ -35,11 +60,14 @@ class PathArgument:
     momenta : MomentumSet
         Set whose gauge measures momentum.
     path : PathBound
-        Travel to each quaternion of the target.
+        Travel to each quaternion of the target, from where the coast leads.
+    departure : Departure
+        The coast, and how far torque can take the body from it.
     """
 
     momenta: MomentumSet
     path: PathBound
+    departure: Departure
 
 
 @final

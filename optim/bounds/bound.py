@@ -10,11 +10,16 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import final
 
+import numpy as np
+
 from ..norms import Euclidean, LargestComponent
 from ..problem import TransferProblem
-from .argument import Argument, ComponentsArgument, MomentumArgument, PathArgument
+from .argument import Argument, ComponentsArgument, Departure, MomentumArgument, PathArgument
 from .cache import remembered
+from .chart import Quaternion, arc_to_identity
+from .coast import Coast, coasts
 from .components import Sides, Widths, component_bounds, peak_from_components
+from .deviation import deviation_above, growth_of_deviations
 from .gauge import GaugeSet, invariant_set, longest_vertex
 from .momentum_sets import MomentumSet, UnitBall
 from .path import PathBound, PathOptions, path_bound
@@ -85,9 +90,10 @@ def certified_lower_bound(problem: TransferProblem, *, options: PathOptions | No
 
     Notes
     -----
-    Euclidean norm: momentum, and shortest path in the metric |J w|. Largest component and
-    thrusters: the Euclidean bounds divided by the longest torque of unit peak, the invariant set
-    (momentum and path) and, for the largest component from rest to exact rest, components.
+    Euclidean norm: momentum, and shortest path in the metric |J w|, from the start or, if it
+    tumbles, from where a coast leads. Largest component and thrusters: the Euclidean bounds divided by
+    the longest torque of unit peak, the invariant set (momentum and path) and, for the largest
+    component from rest to exact rest, components.
     """
     options = options or PathOptions()
     if isinstance(problem.norm, Euclidean):
@@ -133,7 +139,7 @@ def _by_components(
     if all(b >= r for b, r in zip(near, first.widths, strict=True)):
         return []
     beta: Widths = (near[0], near[1], near[2])
-    path = path_of(problem, momenta.with_box(beta), options)
+    path = path_of(problem, problem.attitude, momenta.with_box(beta), options)
     trials = (Fraction(float(known) * factor) for factor in TRIALS)
     found = [component_bounds(momenta, sides, trial) for trial in trials]
     peaks = [peak_from_components(sides, bounds, beta, path.travel) for bounds in found]
@@ -149,12 +155,46 @@ def _momentum_and_path(
     H0 = start_momentum(problem)
     end = momenta.size_of_rate(problem.terminal.rate)
     absorbed = momentum_peak(windows, momenta.size_below(H0), end)
-    path = path_of(problem, momenta, options)
-    peak = least_peak(windows, path.travel, momenta.size_above(H0), end)
+    departure = best_departure(problem, momenta, windows)
+    coast = departure.coast
+    path = path_of(problem, coast.attitude, momenta, options)
+    peak = least_peak(
+        windows,
+        path.travel - departure.slack,
+        momenta.size_above(H0),
+        end,
+        after=coast.until,
+        deviation=departure.deviation,
+    )
+    name = f"{names[1]} after a coast" if coast.until else names[1]
     return [
         NamedBound(names[0], absorbed, MomentumArgument(momenta)),
-        NamedBound(names[1], peak.value, PathArgument(momenta, path)),
+        NamedBound(name, peak.value, PathArgument(momenta, path, departure)),
     ]
+
+
+def best_departure(problem: TransferProblem, momenta: MomentumSet, windows: WindowTravel) -> Departure:
+    """Choose the coast after which straight ways, a guess of the shortest, ask for the largest peak."""
+    H0 = start_momentum(problem)
+    start, end = momenta.size_above(H0), momenta.size_of_rate(problem.terminal.rate)
+    growth = growth_of_deviations(momenta, H0)
+
+    def promise(coast: Coast) -> Fraction:
+        travel = Fraction(_straight(momenta, coast, problem.signs))
+        deviation = deviation_above(windows, coast.until, growth, cells=4)
+        return least_peak(windows, travel, start, end, after=coast.until, deviation=deviation).value
+
+    best = max(coasts(problem), key=promise)
+    deviation = deviation_above(windows, best.until, growth)
+    return Departure(best, growth, deviation, momenta.size_of_rate(best.turn))
+
+
+def _straight(momenta: MomentumSet, coast: Coast, signs: tuple[int, ...]) -> float:
+    """Travel of the shorter rotation about a fixed axis."""
+    unit = np.array([float(c) for c in coast.attitude])
+    unit /= np.linalg.norm(unit)
+    axis = unit[1:] if unit[1:].any() else np.array([1.0, 0.0, 0.0])
+    return min(momenta.straight_travel(axis, 2 * arc_to_identity(sign * unit)) for sign in signs)
 
 
 def start_momentum(problem: TransferProblem) -> tuple[Fraction, Fraction, Fraction]:
@@ -164,13 +204,15 @@ def start_momentum(problem: TransferProblem) -> tuple[Fraction, Fraction, Fracti
     return H[0], H[1], H[2]
 
 
-def path_of(problem: TransferProblem, momenta: MomentumSet, options: PathOptions) -> PathBound:
-    """Path bound of the problem's attitude, remembered."""
+def path_of(
+    problem: TransferProblem, attitude: Quaternion, momenta: MomentumSet, options: PathOptions
+) -> PathBound:
+    """Path bound from an attitude to the problem's target, remembered."""
     target = Target(problem.terminal.attitude)
-    key = (momenta.key(), problem.attitude, target, problem.signs, options)
+    key = (momenta.key(), attitude, target, problem.signs, options)
 
     def compute() -> PathBound:
         signs = problem.signs
-        return path_bound(problem.body, problem.attitude, target, momenta, signs=signs, options=options)
+        return path_bound(problem.body, attitude, target, momenta, signs=signs, options=options)
 
     return remembered(key, compute)

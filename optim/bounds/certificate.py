@@ -141,8 +141,19 @@ def _allowing(
     """Peak that the path argument gives with a travel rounded down; enters instant and end in the witness."""
     start = _up(argument.momenta.size_above(start_momentum(problem)) / scale[0])
     end = _up(argument.momenta.size_of_rate(problem.terminal.rate) / scale[0])
-    found = least_peak(WindowTravel(problem.window), travel, start, end)
+    departure, windows = argument.departure, WindowTravel(problem.window)
+    after, slack = departure.coast.until, _up(departure.slack / scale[0])
+    deviation = _up(departure.deviation / _LESS)
+    found = least_peak(windows, travel - slack, start, end, after=after, deviation=deviation)
     witness |= {"argument": "path", "instant": found.instant, "end": end}
+    if after:
+        witness["coast"] = {
+            "until": after,
+            "attitude": departure.coast.attitude,
+            "turn": departure.coast.turn,
+            "slack": slack,
+            "growth": [departure.growth.distance, departure.growth.momentum],
+        }
     return found.value
 
 

@@ -29,6 +29,7 @@ from .chart import Vector, square_root
 from .constraints import CutConstraint, RateConstraint
 from .momentum_sets import (
     MomentumSet,
+    Row,
     TaylorBoxes,
     greatest_inertia_above,
     least_inertia_below,
@@ -64,6 +65,11 @@ class GaugeSet(MomentumSet):
     ) -> None:
         self.body, self.matrices, self.levels = body, matrices, levels
         self._speed = speed
+
+    @property
+    def rows(self) -> tuple[Row, ...]:
+        """The matrices with their levels."""
+        return tuple(zip(self.matrices, self.levels, strict=True))
 
     @cached_property
     def _float_rows(self) -> tuple[Array, Array]:

@@ -15,12 +15,16 @@ from typing import final
 import numpy as np
 from numpy.typing import NDArray
 
-from ...models.rigid_body import RigidBody, leading_minors
+from ...models.rigid_body import ExactMatrix, RigidBody
+from ...verify.enclosure.balls import greatest_eigenvalue_above, least_eigenvalue_below
 from .chart import Vector, square_root
 from .constraints import ConeConstraint, RateConstraint
 
 Array = NDArray[np.float64]
 
+IDENTITY: ExactMatrix = tuple(
+    (Fraction(int(i == 0)), Fraction(int(i == 1)), Fraction(int(i == 2))) for i in range(3)
+)
 _CORNERS = np.array([[i, j, k] for i in (-1.0, 1.0) for j in (-1.0, 1.0) for k in (-1.0, 1.0)])
 _QUADRATIC = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
 
@@ -129,8 +133,19 @@ def sharpened(
     return bound
 
 
+Row = tuple[ExactMatrix, Fraction]
+"""(M, L): H'M H <= L."""
+
+
 class MomentumSet(ABC):
     """A compact convex symmetric set of momenta with 0 inside; momentum in N m s per unit of travel."""
+
+    body: RigidBody
+
+    @property
+    @abstractmethod
+    def rows(self) -> tuple[Row, ...]:
+        """Rows that make up the set, |H|^2 <= L first; the set is {H : H'M H <= L for every row}."""
 
     @abstractmethod
     def support_above(self, v: Array) -> Array:
@@ -184,6 +199,11 @@ class UnitBall(MomentumSet):
         self.body = body
         self._fastest = 1 / least_inertia_below(body)
 
+    @property
+    def rows(self) -> tuple[Row, ...]:
+        """|H|^2 <= 1."""
+        return ((IDENTITY, Fraction(1)),)
+
     def support_above(self, v: Array) -> Array:
         """Euclidean length."""
         return np.asarray(np.sqrt((v * v).sum(axis=-1)))
@@ -226,26 +246,13 @@ class UnitBall(MomentumSet):
 
 
 def least_inertia_below(body: RigidBody) -> Fraction:
-    """Rational lower bound of the least principal inertia, about 1e-12 relative, proved by minors."""
-    return _eigenvalue_below(body.exact_inertia, float(body.principal_inertias[0]))
+    """Rational lower bound of the least principal inertia, about 1e-12 relative."""
+    return least_eigenvalue_below(body.exact_inertia)
 
 
 def greatest_inertia_above(body: RigidBody) -> Fraction:
-    """Rational upper bound of the greatest principal inertia, about 1e-12 relative, proved by minors."""
-    negative = tuple(tuple(-x for x in row) for row in body.exact_inertia)
-    return -_eigenvalue_below(negative, -float(body.principal_inertias[2]))
-
-
-def _eigenvalue_below(rows: tuple[tuple[Fraction, ...], ...], guess: float) -> Fraction:
-    """Rational lower bound of the least eigenvalue near the guess: A - bound I > 0, exactly."""
-    margin = abs(guess) * 2.0**-42
-    for _ in range(60):
-        bound = Fraction(guess - margin)
-        gap = [[rows[i][j] - (bound if i == j else 0) for j in range(3)] for i in range(3)]
-        if all(minor > 0 for minor in leading_minors(gap)):
-            return bound
-        margin *= 2
-    raise ArithmeticError(f"no lower bound of the least eigenvalue near {guess:g}")
+    """Rational upper bound of the greatest principal inertia, about 1e-12 relative."""
+    return greatest_eigenvalue_above(body.exact_inertia)
 
 
 def length_above(values: tuple[Fraction, ...]) -> Fraction:

@@ -7,7 +7,9 @@ For any instant s the integral of that is at most
     N0 s + Nf (tf - s) + p A(s),    A(s) = int_0^s up + int_s^tf (total - up),
 
 so a motion whose travel must be at least D needs p >= (D - N0 s - Nf (tf - s)) / A(s): linear in
-p, exact in rationals, valid for every s; the best s is only searched for.
+p, exact in rationals, valid for every s; the best s is only searched for. If only the travel after an
+instant c counts, and it may be less than D by p E (the deviation from a coast until c), then N0 counts
+from c on, and A(s) loses int_0^c up and gains E.
 """
 
 from __future__ import annotations
@@ -97,6 +99,11 @@ class WindowTravel:
         inner = self._at(s)[1]
         return inner + self.total * (self.horizon - s) - (self._prefix[1][-1] - inner)
 
+    def moment(self, a: Fraction, b: Fraction, about: Fraction) -> Fraction:
+        """Integral of w(t) (about - t) over [a, b], s^2."""
+        ends = self.up(b) * (about - b) - self.up(a) * (about - a)
+        return ends + self.opened_area(b) - self.opened_area(a)
+
     def instant(self, opened: Fraction) -> Fraction:
         """Some t at which up(t) is near `opened`, a short binary fraction (clamped to [0, horizon])."""
         low, high = Fraction(0), self.horizon
@@ -122,20 +129,33 @@ class PeakFromTravel:
     instant: Fraction
 
 
-def least_peak(windows: WindowTravel, travel: Fraction, start: Fraction, end: Fraction) -> PeakFromTravel:
-    """Lower bound of p from a travel, with upper bounds of the size of momentum at start and end."""
-    best = PeakFromTravel(Fraction(0), Fraction(0))
+def least_peak(
+    windows: WindowTravel,
+    travel: Fraction,
+    start: Fraction,
+    end: Fraction,
+    *,
+    after: Fraction = Fraction(0),
+    deviation: Fraction = Fraction(0),
+) -> PeakFromTravel:
+    """Lower bound of p from a travel, with upper bounds of the size of momentum at start and end.
+
+    The travel is that after the instant `after`, less p times `deviation` (s^2).
+    """
+    best = PeakFromTravel(Fraction(0), after)
     if windows.total == 0:
         return best
-    s = windows.instant(windows.total / 2)
+    s = max(windows.instant(windows.total / 2), after)
+    saved = windows.opened_area(after) - deviation
     for _ in range(12):
-        area = windows.area(s)
-        value = (travel - start * s - end * (windows.horizon - s)) / area if area > 0 else Fraction(0)
+        area = windows.area(s) - saved
+        free = start * (s - after) + end * (windows.horizon - s)
+        value = (travel - free) / area if area > 0 else Fraction(0)
         if value <= best.value * (1 + Fraction(1, 10**12)):
             break
         best = PeakFromTravel(value, s)
         crossing = (windows.total + (end - start) / Fraction(float(value))) / 2
-        s = min(windows.instant(crossing), windows.horizon)
+        s = max(min(windows.instant(crossing), windows.horizon), after)
     return best
 
 

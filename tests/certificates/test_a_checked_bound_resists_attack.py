@@ -11,9 +11,9 @@ import pytest
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import PiecewisePolynomial
 from intermit.optim.bounds.argument import PathArgument
-from intermit.optim.bounds.bound import NamedBound
+from intermit.optim.bounds.bound import NamedBound, best_departure, start_momentum
 from intermit.optim.bounds.certificate import peak_certificate
-from intermit.optim.bounds.chart import chart_between
+from intermit.optim.bounds.chart import arc_to_identity, chart_between
 from intermit.optim.bounds.gauge import invariant_set
 from intermit.optim.bounds.momentum_sets import UnitBall
 from intermit.optim.bounds.path import PathBound
@@ -35,21 +35,28 @@ WINDOW = PiecewisePolynomial(
 WITNESS = ("certificates", 0, "witness")
 PROOF = (*WITNESS, "separations", 0)
 BULK = 200
+"""How many numbers of the potential are changed; a tenth of it where the rest is the claim."""
 COARSE = Refinement(mesh_gap=1e-2)
 """Any transfer flown will do: its peak is above the optimum's."""
 
 
-def problem(norm):
+TUMBLING = (Fraction("0.03"), Fraction("-0.05"), Fraction("0.02"))
+
+
+def problem(norm, rate=(Fraction(0),) * 3):
     turn = quaternion_from_axis_angle((1, 1, 1), math.radians(60))
-    return TransferProblem(body=LONG, window=WINDOW, attitude=turn, norm=norm)
+    return TransferProblem(body=LONG, window=WINDOW, attitude=turn, rate=rate, norm=norm)
 
 
 def bound_by_a_linear_potential(case):
     """A weak bound that takes no fitting: its certificate has all that the best one has."""
     ball = isinstance(case.norm, Euclidean)
     momenta = UnitBall(case.body) if ball else invariant_set(case.body, case.norm)
-    q = tuple(Fraction(float(c)) for c in case.unit_attitude)
-    chart = chart_between(q, 0.8 * case.angle)
+    windows = WindowTravel(case.window)
+    departure = best_departure(case, momenta, windows)
+    q = departure.coast.attitude
+    arc = arc_to_identity(np.array([float(c) for c in q]) / float(sum(c * c for c in q)) ** 0.5)
+    chart = chart_between(q, 1.6 * arc)
     along = {e: c / 100 for e, c in random_cubic(3, 4).items() if sum(e) > 1}
     along |= dict(zip(AXES, chart.direction, strict=True))
     found = proved_separation(
@@ -57,15 +64,28 @@ def bound_by_a_linear_potential(case):
     )
     assert found.travel > 0
     path = PathBound(found.travel, ((1, found), (-1, None)))
-    windows = WindowTravel(case.window)
-    peak = least_peak(windows, path.travel, Fraction(0), Fraction(0)).value
-    return NamedBound("path", peak, PathArgument(momenta, path))
+    start, end = momenta.size_above(start_momentum(case)), Fraction(0)
+    peak = least_peak(
+        windows, path.travel - departure.slack, start, end,
+        after=departure.coast.until, deviation=departure.deviation,
+    ).value  # fmt: skip
+    assert peak > 0
+    return NamedBound("path", peak, PathArgument(momenta, path, departure))
 
 
-@pytest.fixture(scope="module", params=[Euclidean(), LargestComponent()], ids=["ball", "invariant set"])
+CASES = {
+    "ball": problem(Euclidean()),
+    "invariant set": problem(LargestComponent()),
+    "ball, after a coast": problem(Euclidean(), TUMBLING),
+    "invariant set, after a coast": problem(LargestComponent(), TUMBLING),
+}
+
+
+@pytest.fixture(scope="module", params=CASES)
 def document(request):
-    case = problem(request.param)
+    case = CASES[request.param]
     text = certificate_text([peak_certificate(case, bound_by_a_linear_potential(case))])
+    assert ("coast" in text) == ("coast" in request.param)
     assert all(f.valid for f in check_text(text))
     return json.loads(text)
 
@@ -116,15 +136,16 @@ def stated_problem(document):
 
 @pytest.mark.slow
 def test_every_mutant_is_refused_or_true(document):
-    """Each scalar, 200 bulk numbers: what passes claims the same, less, or what no transfer denies."""
+    """Each scalar, some of the many: what passes claims the same, less, or what no transfer denies."""
     rng = random.Random(8)
     original = Fraction(document["parts"][0]["certificates"][0]["claim"]["peak"])
     paths = list(leaves(document["parts"][0]))
     bulk = [entry for entry in paths if "potential" in entry[0]]
     numbers = [entry for entry in paths if "potential" not in entry[0]]
-    assert len(numbers) > 40
+    coasting = "coast" in document["parts"][0]["certificates"][0]["witness"]
+    assert len(numbers) > (48 if coasting else 40)
     passed = 0
-    for path, text in numbers + [rng.choice(bulk) for _ in range(BULK)]:
+    for path, text in numbers + [rng.choice(bulk) for _ in range(BULK // 10 if coasting else BULK)]:
         if text[0].isalpha():
             assert not accepted(changed(document, path, text + "s"))
             continue
@@ -205,6 +226,38 @@ HOSTILE = {
     "a field that nothing reads": (("data", "transfer", "torque", "axes"), [["1", "0", "0"]]),
     "a field of the witness that nothing reads": ((*WITNESS, "box"), ["1", "1", "1"]),
 }
+
+
+COAST = (*WITNESS, "coast")
+HOSTILE_COASTS = {
+    "a coast of no time": ((*COAST, "until"), "0"),
+    "a coast into the past": ((*COAST, "until"), "-1"),
+    "a coast beyond the end": ((*COAST, "until"), "11"),
+    "a coast for ever": ((*COAST, "until"), "1e300"),
+    "nowhere": ((*COAST, "attitude"), ["0"] * 4),
+    "the target at once": ((*COAST, "attitude"), ["1", "0", "0", "0"]),
+    "the coast not followed": ((*COAST, "attitude"), [str(c) for c in CASES["ball"].attitude]),
+    "no allowance for the turn": ((*COAST, "turn"), "0"),
+    "a negative turn": ((*COAST, "turn"), "-1"),
+    "a turn that costs nothing": ((*COAST, "slack"), "0"),
+    "a negative slack": ((*COAST, "slack"), "-1"),
+    "deviations that do not grow": ((*COAST, "growth"), ["0", "0"]),
+    "deviations that shrink": ((*COAST, "growth", 0), "-1"),
+    "deviations out of bounds": ((*COAST, "growth", 1), "1e9"),
+    "a split during the coast": ((*WITNESS, "instant"), "0.01"),
+    "another start": (("data", "transfer", "rate", 1), "-0.051"),
+    "another start, tumbling the other way": (("data", "transfer", "rate"), ["-0.03", "0.05", "-0.02"]),
+    "a start of no length to speak of": (("data", "transfer", "attitude"), ["1e-30"] * 4),
+    "a start that spins": (("data", "transfer", "rate"), ["300", "-500", "200"]),
+}
+
+
+@pytest.mark.parametrize("what", HOSTILE_COASTS)
+def test_hostile_coasts_prove_nothing(document, what):
+    if "coast" not in document["parts"][0]["certificates"][0]["witness"]:
+        pytest.skip("starts at rest")
+    path, value = HOSTILE_COASTS[what]
+    assert not accepted(changed(document, path, value))
 
 
 @pytest.mark.parametrize("what", HOSTILE)

@@ -23,6 +23,12 @@ def ball(value: Fraction | float | int) -> Any:
     return arb(fmpq(numerator, denominator))
 
 
+def exact_above(value: Any) -> Fraction:
+    """Return the upper end of a ball, exactly."""
+    mantissa, exponent = value.upper().man_exp()
+    return int(mantissa) * Fraction(2) ** int(exponent)
+
+
 def float_below(value: Any) -> float:
     """Return a float that is <= every point of the ball."""
     mid = float(value.lower())
