@@ -3192,8 +3192,7 @@ def require_growth(gauge: Gauge, H: Vector, mu: Fraction, nu: Fraction) -> None:
     """Prove mu and nu of `Departure`.
 
     A row's growth is y'M X y/(y'M y), X linear in h. Where N(y) = 1 by that row y'M y = L, and |y|^2 <= L_0:
-    it is at most L_0/L times the largest eigenvalue of S = sum h_i S_i, the symmetric part of M X. The
-    trace of S is 0, so that eigenvalue is at most sqrt(2/3) |S|_F; |S|_F^2 = h'G h with G_ij = tr S_i S_j.
+    it is at most L_0/L times the largest eigenvalue of the symmetric part of M X.
     """
     require(mu >= 0 and nu >= 0, "growth must not be negative")
     unit = combination([Fraction(1)] * 3, [axis_matrix(i) for i in range(3)])
@@ -3201,28 +3200,35 @@ def require_growth(gauge: Gauge, H: Vector, mu: Fraction, nu: Fraction) -> None:
     stretch, turning = [], []
     for h in unit:
         w = image(gauge.inverse, h)
-        columns = [image(gauge.inverse, y) for y in unit]
-        inner = [image(gauge.J, vector_product(w, c)) for c in columns]
-        ways = [vector_product(h, c) for c in columns]
-        stretch.append([[x - y for x, y in zip(a, b, strict=True)] for a, b in zip(ways, inner, strict=True)])
+        moved = [image(gauge.inverse, y) for y in unit]
+        held = [image(gauge.J, vector_product(w, c)) for c in moved]
+        parted = [vector_product(h, c) for c in moved]
+        stretch.append(
+            [[x - y for x, y in zip(a, b, strict=True)] for a, b in zip(parted, held, strict=True)]
+        )
         turning.append([vector_product(y, w) for y in unit])
     square = sum((x * x for x in H), Fraction(0))
     for M, L in zip(gauge.rows, gauge.levels, strict=True):
-        for rate, ways in ((mu, stretch), (nu, turning)):
-            parts = []
-            for columns in ways:
-                moved = [image(M, c) for c in columns]
-                parts.append([(moved[j][i] + moved[i][j]) / 2 for i in range(3) for j in range(3)])
-            require(
-                all(p[0] + p[4] + p[8] == 0 for p in parts),
-                "a row of the set is not of the form a I + b J^-1",
-            )
-            gram = [
-                [sum((x * y for x, y in zip(p, q, strict=True)), Fraction(0)) for q in parts] for p in parts
-            ]
-            level = Fraction(3, 2) * (rate * L / gauge.levels[0]) ** 2
-            gap = combination([level, -square], [unit, gram])
-            require(is_positive_semidefinite(gap), "the growth of a deviation is not proved")
+        for rate, X in ((mu, stretch), (nu, turning)):
+            require_eigenvalues_within(M, X, square, rate * L / gauge.levels[0])
+
+
+def require_eigenvalues_within(M: Matrix, X: list[Matrix], square: Fraction, bound: Fraction) -> None:
+    """Prove that eigenvalues of S, the symmetric part of M sum h_i X_i, are <= bound for |h|^2 <= square.
+
+    Each X is a list of columns. The trace of S is 0, so they are at most sqrt(2/3) |S|_F; and
+    |S|_F^2 = h'G h with G_ij = tr S_i S_j.
+    """
+    parts: list[Vector] = []
+    for columns in X:
+        A = [image(M, c) for c in columns]
+        S = [[(A[j][i] + A[i][j]) / 2 for j in range(3)] for i in range(3)]
+        require(S[0][0] + S[1][1] + S[2][2] == 0, "a growth of volumes")
+        parts.append([x for row in S for x in row])
+    gram = [[sum((x * y for x, y in zip(p, q, strict=True)), Fraction(0)) for q in parts] for p in parts]
+    unit = combination([Fraction(1)] * 3, [axis_matrix(i) for i in range(3)])
+    gap = combination([Fraction(3, 2) * bound**2, -square], [unit, gram])
+    require(is_positive_semidefinite(gap), "the growth of a deviation is not proved")
 
 
 def image(A: Matrix, x: Vector) -> Vector:
