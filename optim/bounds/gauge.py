@@ -32,6 +32,7 @@ from .momentum_sets import (
     Row,
     TaylorBoxes,
     greatest_inertia_above,
+    has_equal_inertias,
     least_inertia_below,
     length_above,
     sharpened,
@@ -180,7 +181,7 @@ def invariant_set(body: RigidBody, norm: Norm) -> GaugeSet:
     high = 1 / least_inertia_below(body)
     identity = _combination(inverse, Fraction(0), Fraction(1))
     rows = [identity]
-    if high - low > high / 10**6:
+    if not has_equal_inertias(body):
         rows += [_combination(inverse, Fraction(1), -low), _combination(inverse, Fraction(-1), high)]
     levels = [_largest_form(row, vertices) for row in rows]
     square = high**2 * levels[0]

@@ -255,6 +255,12 @@ def greatest_inertia_above(body: RigidBody) -> Fraction:
     return greatest_eigenvalue_above(body.exact_inertia)
 
 
+def has_equal_inertias(body: RigidBody) -> bool:
+    """Whether the principal inertias are equal, to 1e-6: rows of J^-1 would say no more than |H|^2 does."""
+    least, greatest = least_inertia_below(body), greatest_inertia_above(body)
+    return greatest - least <= greatest / 10**6
+
+
 def length_above(values: tuple[Fraction, ...]) -> Fraction:
     """Upper bound of the Euclidean length."""
     return square_root(sum((x * x for x in values), Fraction(0)))[1]

@@ -15,7 +15,7 @@ import numpy as np
 from ...models.rigid_body import RigidBody
 from .chart import Quaternion, arc_to_identity
 from .fit import Fit, PotentialProgram
-from .momentum_sets import MomentumSet, UnitBall
+from .momentum_sets import MomentumSet, UnitBall, has_equal_inertias
 from .prove import BranchAndBound
 from .separation import (
     WIDEST_ARC,
@@ -66,11 +66,11 @@ class PathOptions:
         """Return options that cost little."""
         return replace(self, degree=min(self.degree or 4, 4), tolerance=max(self.tolerance, 2e-3))
 
-    def degree_for(self, arc_sum: float, *, smooth: bool) -> int:
-        """Degree that pays for a region of that arc sum (rad), for a ball of momenta or a set with edges."""
+    def degree_for(self, arc_sum: float, *, costly: bool) -> int:
+        """Degree that pays for a region of that arc sum (rad), where fits are costly and where not."""
         if self.degree is not None:
             return self.degree
-        first, second = (1.6, 2.5) if smooth else (2.2, 3.5)
+        first, second = (2.2, 2.7) if costly else (1.6, 2.5)
         return 5 if arc_sum < first else 6 if arc_sum < second else 7
 
 
@@ -155,9 +155,10 @@ def _nearest(
     program: PotentialProgram | None = None
 
     smooth = isinstance(momenta, UnitBall)
+    costly = not smooth and not has_equal_inertias(body)
 
     def degree_for(travel: float) -> int:
-        return options.degree_for(travel * speed / 2, smooth=smooth)
+        return options.degree_for(travel * speed / 2, costly=costly)
 
     def made(degree: int) -> PotentialProgram:
         # Sets with edges gain least from a third proof, and theirs cost most.
