@@ -40,6 +40,10 @@ def coarse_mesh(problem: TransferProblem, cells: int) -> Mesh:
     return build_mesh(problem.window, parts)
 
 
+_ALIKE = 1e-4
+"""Difference of two torque histories over their peak below which they are one local optimum."""
+
+
 def minimum_peak(
     problem: TransferProblem,
     *,
@@ -104,9 +108,26 @@ def minimum_peak(
     first = finish(candidates[0])
     if first.standing is Standing.CHECKED:
         return first
-    others = (finish(candidate) for candidate in candidates[1:])
+    others = (finish(candidate) for candidate in _distinct(candidates)[1:])
     second = next((other for other in others if other.standing is Standing.CHECKED), first)
     return second if second is first else _beside(first, second)
+
+
+def _distinct(candidates: list[LocalAnswer]) -> list[LocalAnswer]:
+    """Return the candidates without those that repeat an earlier one: refined, they would end alike."""
+    found: list[LocalAnswer] = []
+    for one in candidates:
+        if not any(_same(one, other) for other in found):
+            found.append(one)
+    return found
+
+
+def _same(one: LocalAnswer, other: LocalAnswer) -> bool:
+    """Whether two answers on one mesh hold the same torque, as far as the search solves for it."""
+    if one.shooting.sign != other.shooting.sign:
+        return False
+    apart = float(np.abs(one.flight.control - other.flight.control).max())
+    return apart <= _ALIKE * one.peak
 
 
 def _beside(lower: PeakAnswer, answer: PeakAnswer) -> PeakAnswer:

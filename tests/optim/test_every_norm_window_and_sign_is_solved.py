@@ -141,6 +141,24 @@ def test_a_lower_peak_that_could_not_be_checked_is_told(monkeypatch):
     assert not minimum_peak(problem, search=ONE, refinement=ROUGH).reason
 
 
+def test_an_optimum_that_failed_its_check_is_not_refined_again(monkeypatch):
+    """Both starts towards +1 find the same optimum of this problem: it is refined once."""
+    finish = import_module("intermit.optim.peak.finish").Finish
+    honest, signs = finish.__call__, []
+
+    def doubtful(self, candidate):
+        signs.append(candidate.shooting.sign)
+        return replace(honest(self, candidate), standing=Standing.UNDECIDED, reason="doubt")
+
+    monkeypatch.setattr(finish, "__call__", doubtful)
+    problem = paper_transfer(Euclidean(), horizon="11.22")
+    answer = minimum_peak(problem, search=MultiStart(starts=2), refinement=ROUGH)
+    assert answer.standing is Standing.UNDECIDED
+    assert len(answer.search.starts) == 4
+    assert signs.count(1) == 1
+    assert -1 in signs
+
+
 def test_starts_seeds_and_local_optima_are_recorded():
     answer = minimum_peak(tumbling(LargestComponent()), search=MultiStart(starts=3, seed=7), refinement=ROUGH)
     starts = answer.search.starts
