@@ -143,7 +143,7 @@ COMPONENTS = [
     ((*WITNESS, "trial"), "1.2"),
     ((*WITNESS, "bounds", 0), "0.95"),
     ((*WITNESS, "box", 1), "0.97"),
-    ((*WITNESS, "box", 1), "1.05"),
+    ((*WITNESS, "box", 1), "1.1"),
     ((*WITNESS, "widths", 0, 0), "0.9"),
     ((*WITNESS, "multipliers", 0, 0), "0.5"),
 ]
