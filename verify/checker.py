@@ -3123,10 +3123,10 @@ def coast_attitude(J: Matrix, q: Vector, H: Vector, until: Fraction) -> tuple[Ve
 
     In steps of the time x in [0, 1], with g = H/sigma and u = B g, B = sigma step J^-1,
         g' = g x u,        q' = q (0, u)/2,
-    Taylor polynomials in units of 2^-PEAK_COAST_BITS. What they miss of the equations (the products
-    beyond their degree, and every rounding) is a defect; |g| and the length of a difference of
-    quaternions are conserved, so the errors grow at most as e' <= |B| (|g| + |its polynomial|) e + defect
-    and as |q's polynomial| |B| e/2 + defect.
+    Taylor polynomials in units of 2^-PEAK_COAST_BITS, B too, however long its numbers are. What they miss
+    of the equations (the products beyond their degree, and every rounding) is a defect; |g| and the length
+    of a difference of quaternions are conserved, so the errors grow at most as
+    e' <= |B| (|g| + |its polynomial|) e + defect and as |q's polynomial| |B| e/2 + defect.
     """
     one, inverse = 1 << PEAK_COAST_BITS, inverse_matrix(J)
     size = length_interval(H)[1]
@@ -3135,7 +3135,7 @@ def coast_attitude(J: Matrix, q: Vector, H: Vector, until: Fraction) -> tuple[Ve
     steps = math.ceil(8 * fastest * size * until)
     require(steps <= PEAK_COAST_STEPS, "the coast turns too far")
     require(1 < 2**64 * max(map(abs, q)) < 2**128, "the start quaternion is too long or too short")
-    B = [[x * sigma * until / steps for x in row] for row in inverse]
+    B = [[math.floor(x * sigma * until / steps * one) for x in row] for row in inverse]
     b, size = fastest * sigma * until / steps, size / sigma
     g, p = ([math.floor(x * one) for x in v] for v in ([h / sigma for h in H], q))
     off, error = Fraction(4, one), Fraction(4, one)
@@ -3146,6 +3146,7 @@ def coast_attitude(J: Matrix, q: Vector, H: Vector, until: Fraction) -> tuple[Ve
         rounded = Fraction(4 * (PEAK_COAST_ORDER + 1) ** 2, one)
         grown = b * (size + reach)
         require(grown <= 1, "a step of the coast is too long")
+        rounded *= 1 + reach  # the rounding of B grows with what it acts on
         off += rounded * (1 + reach) + beyond(sizes[0], sizes[2])
         off = rounded_up(off * (1 + grown + grown**2) * one) / one
         error += rounded * (1 + length) + beyond(sizes[1], sizes[2]) + length * b * off
@@ -3154,11 +3155,11 @@ def coast_attitude(J: Matrix, q: Vector, H: Vector, until: Fraction) -> tuple[Ve
     return [Fraction(c, one) for c in p], error
 
 
-def coast_series(B: Matrix, g: list[int], p: list[int]) -> tuple[list[list[int]], ...]:
+def coast_series(B: list[list[int]], g: list[int], p: list[int]) -> tuple[list[list[int]], ...]:
     """Coefficients of g, q and u in powers of the time; each is off by at most one unit for its order."""
     G, Q, U = [g], [p], []
     for k in range(PEAK_COAST_ORDER + 1):
-        U.append([math.floor(x) for x in image(B, [Fraction(c) for c in G[k]])])
+        U.append([sum(map(mul, row, G[k])) >> PEAK_COAST_BITS for row in B])
         if k == PEAK_COAST_ORDER:
             break
         pairs = [(i, k - i) for i in range(k + 1)]

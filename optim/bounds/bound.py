@@ -184,7 +184,7 @@ def best_departure(problem: TransferProblem, momenta: MomentumSet, windows: Wind
         deviation = deviation_above(windows, coast.until, growth, cells=4)
         return least_peak(windows, travel, start, end, after=coast.until, deviation=deviation).value
 
-    best = max(coasts(problem), key=promise)
+    best = max((coast for coast in coasts(problem) if growth.allows(coast.until)), key=promise)
     deviation = deviation_above(windows, best.until, growth)
     return Departure(best, growth, deviation, momenta.size_of_rate(best.turn))
 

@@ -37,6 +37,9 @@ from .travel import WindowTravel
 CELLS = 32
 """Parts of a coast, each with the growth of its beginning."""
 
+MOST_GROWTH = 60
+"""Exponent of a growth up to which a coast is of any use; the checker ends at 64."""
+
 _FINE = 2**64
 
 
@@ -55,6 +58,10 @@ class Growth:
 
     distance: Fraction
     momentum: Fraction
+
+    def allows(self, duration: Fraction) -> bool:
+        """Whether a deviation stays within numbers worth writing down."""
+        return max(self.distance, self.momentum) * duration <= MOST_GROWTH
 
     def factor_above(self, duration: Fraction) -> Fraction:
         """Upper bound of (exp(mu u) + exp(nu u))/2."""
@@ -99,8 +106,14 @@ def _row_growth(M: ExactMatrix, X: list[ExactMatrix]) -> Fraction:
     gram = [[_inner(p, q) for q in parts] for p in parts]
     if not any(any(row) for row in gram):
         return Fraction(0)
-    root = square_root(Fraction(2, 3) * greatest_eigenvalue_above(gram))[1]
-    return Fraction((root * _FINE).__ceil__(), _FINE)
+    unit = _power_of_two_near(gram[0][0] + gram[1][1] + gram[2][2]) // 2
+    small = [[x / Fraction(4) ** unit for x in row] for row in gram]  # whatever the units of the inertia
+    root = square_root(Fraction(2, 3) * greatest_eigenvalue_above(small))[1]
+    return Fraction((root * _FINE).__ceil__(), _FINE) * Fraction(2) ** unit
+
+
+def _power_of_two_near(x: Fraction) -> int:
+    return x.numerator.bit_length() - x.denominator.bit_length()
 
 
 def _exponential_above(x: Fraction) -> Fraction:

@@ -154,7 +154,10 @@ def least_peak(
         if value <= best.value * (1 + Fraction(1, 10**12)):
             break
         best = PeakFromTravel(value, s)
-        crossing = (windows.total + (end - start) / Fraction(float(value))) / 2
+        near = Fraction(float(value))
+        if not near:
+            break  # too small for a float
+        crossing = (windows.total + (end - start) / near) / 2
         s = max(min(windows.instant(crossing), windows.horizon), after)
     return best
 

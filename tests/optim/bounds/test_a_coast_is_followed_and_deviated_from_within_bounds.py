@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import PiecewisePolynomial
-from intermit.optim.bounds.bound import start_momentum
+from intermit.optim.bounds.bound import best_departure, start_momentum
 from intermit.optim.bounds.coast import coasts
 from intermit.optim.bounds.deviation import Growth, deviation_above, growth_of_deviations
 from intermit.optim.bounds.gauge import invariant_set, torque_vertices
@@ -16,6 +16,7 @@ from intermit.optim.bounds.momentum_sets import UnitBall
 from intermit.optim.bounds.travel import WindowTravel
 from intermit.optim.norms import Euclidean, LargestComponent, ThrusterAxes
 from intermit.optim.problem import TransferProblem, quaternion_from_axis_angle
+from intermit.verify import checker
 from intermit.verify.checker import coast_attitude
 from scipy.integrate import solve_ivp
 
@@ -109,6 +110,33 @@ def test_the_checker_finds_the_same_coast_by_itself(body, rate):
         coast.until,
     )[0]
     assert max(abs(a - 3 * b) for a, b in zip(doubled, reached, strict=True)) < Fraction(1, 10**24)
+
+
+@pytest.mark.parametrize(("bits", "order"), [(192, 3), (192, 12), (40, 30), (30, 6)])
+def test_errors_of_coarse_arithmetic_are_within_their_bound(monkeypatch, bits, order):
+    J = [list(row) for row in TILTED.exact_inertia]
+    for n in range(4):
+        q = [Fraction(1), Fraction(n, 3), Fraction(-1, 2), Fraction(n, 7)]
+        H = [Fraction(n - 1), Fraction(1, n + 1), Fraction(-n, 3)]
+        true, error = coast_attitude(J, q, H, Fraction(n + 1))
+        with monkeypatch.context() as patch:
+            patch.setattr(checker, "PEAK_COAST_BITS", bits)
+            patch.setattr(checker, "PEAK_COAST_ORDER", order)
+            reached, bound = coast_attitude(J, q, H, Fraction(n + 1))
+        off = checker.length_interval([a - b for a, b in zip(true, reached, strict=True)])[1]
+        assert error < bound
+        assert off <= bound + error
+
+
+def test_long_numbers_do_not_make_a_coast_long():
+    """Thousands of digits are rounded first: exact products of them took minutes."""
+    long = Fraction(10**3800 + 1, 10**3800 - 3) / 10
+    J = [[3 + long, long / 2, long / 3], [long / 2, 2 - long, long / 5], [long / 3, long / 5, 2 + long / 7]]
+    short = [[Fraction(round(x * 10**40), 10**40) for x in row] for row in J]
+    q, H = [Fraction(1), Fraction(1), Fraction(0), Fraction(0)], [Fraction(4), Fraction(-5), Fraction(2)]
+    (a, error), (b, _) = (coast_attitude(M, q, H, Fraction(2)) for M in (J, short))
+    assert error < Fraction(1, 10**20)
+    assert max(abs(x - y) for x, y in zip(a, b, strict=True)) < Fraction(1, 10**20)
 
 
 def test_a_coast_of_a_body_that_spins_about_an_axis_is_that_rotation():
@@ -209,6 +237,28 @@ def test_no_small_torque_deviates_further(body, norm):
         found, bound = worst_deviation(case, momenta, 6.5), bounded(case, momenta, Fraction("6.5"))
         assert found <= 1.002 * bound
         assert found > (0.3 if any(x > 0.05 for x in map(abs, case.start_rate)) else 0.75) * bound
+
+
+@pytest.mark.parametrize("unit", [Fraction(10) ** 12, Fraction(10) ** 30, Fraction(1, 10**12)])
+def test_growth_does_not_depend_on_the_unit_of_inertia(unit):
+    scaled = RigidBody.from_rows([[unit * x for x in row] for row in TILTED.exact_inertia])
+    one, other = problem(TILTED, RATES[0], LargestComponent()), problem(scaled, RATES[0], LargestComponent())
+    a, b = (growth_of_deviations(set_of(c), start_momentum(c)) for c in (one, other))
+    assert float(b.distance) == pytest.approx(float(a.distance), rel=1e-9)
+    assert float(b.momentum) == pytest.approx(float(a.momentum), rel=1e-9)
+
+
+@pytest.mark.parametrize("arm", ["1e-3", "1e-6"])
+def test_a_coast_of_no_use_is_not_followed(arm):
+    """Thrusters that hardly turn the body about two axes: deviations would grow beyond any number."""
+    rows = [[0, 0, 1], [0, 0, -1], [arm, 0, 0], ["-" + arm, 0, 0], [0, arm, 0], [0, "-" + arm, 0]]
+    case = problem(LONG, RATES[0], ThrusterAxes.from_rows(rows))
+    departure = best_departure(case, set_of(case), WindowTravel(WINDOW))
+    assert departure.growth.allows(departure.coast.until)
+    assert not departure.growth.allows(Fraction(1))
+    near = RigidBody.from_rows([[1, 0, 0], [0, 1, 0], [0, 0, 1 + Fraction(1, 10**200)]])
+    still = growth_of_deviations(UnitBall(near), start_momentum(problem(near, RATES[0])))
+    assert 0 < still.distance < Fraction(1, 10**190)
 
 
 def test_equal_inertias_reach_the_deviation():
