@@ -2246,6 +2246,8 @@ PEAK_BOXES = 150_000
 PEAK_CELLS = 96
 PEAK_DEGREE = 12
 PEAK_COAST_BITS, PEAK_COAST_ORDER, PEAK_COAST_STEPS, PEAK_COAST_CELLS = 192, 40, 400, 32
+PEAK_DATA_BITS = 4096
+"""Of an inertia's or a window's common denominator: products of longer numbers take minutes."""
 Solid = list[list[list[int]]]
 """Coefficients [i][j][k], i + j + k <= degree, of a polynomial of t in [-1, 1]^3."""
 Cubic = dict[tuple[int, int, int], Fraction]
@@ -2261,6 +2263,15 @@ def root_interval(value: Fraction) -> tuple[Fraction, Fraction]:
     require(value >= 0, "square root of a negative number")
     root = isqrt((value.numerator << 192) // value.denominator)
     return Fraction(root, 1 << 96), Fraction(root + 1, 1 << 96)
+
+
+def require_short(numbers: Sequence[Fraction], what: str) -> None:
+    """Refuse numbers whose sums and products would be too long to compute with."""
+    common = 1
+    for x in numbers:
+        common = lcm(common, x.denominator)
+        longest = max(common.bit_length(), x.numerator.bit_length())
+        require(longest <= PEAK_DATA_BITS, f"the numbers of the {what} are too long")
 
 
 def length_interval(values: Sequence[Fraction]) -> tuple[Fraction, Fraction]:
@@ -2315,6 +2326,7 @@ class PeakWindow:
     def read(cls, place: Node) -> PeakWindow:
         """Read and check the profile."""
         knots, shapes = place["knots"].vector(), [shape.vector() for shape in place["shapes"].items()]
+        require_short([*knots, *(c for shape in shapes for c in shape)], "window")
         fits = len(knots) == len(shapes) + 1 >= 2 and knots[0] == 0
         require(fits, "window: knots and shapes disagree")
         require(all(a < b for a, b in pairwise(knots)), "window: knots must increase")
@@ -2986,6 +2998,7 @@ class Transfer:
     @classmethod
     def read(cls, data: Node) -> Transfer:
         """Read and check the transfer of the data."""
+        require_short([x for row in data["inertia"].matrix(3, 3) for x in row], "inertia")
         J, place = read_inertia(data), data["transfer"]
         torques, words, unit = read_torques(place["torque"])
         q, w, signs = (

@@ -266,6 +266,15 @@ def test_hostile_files_prove_nothing(document, what):
     assert not accepted(changed(document, path, value))
 
 
+@pytest.mark.parametrize("place", [("inertia", 0, 0), ("transfer", "window", "knots", 1)])
+def test_data_of_thousands_of_digits_are_refused_before_they_are_multiplied(document, place):
+    long = changed(document, ("data", *place), f"{4 * 10**1500 + 1}/{10**1500 + 9}")
+    (finding,) = check_text(json.dumps(long))
+    assert "too long" in finding.reason
+    middling = changed(document, ("data", *place), f"{10**300 + 1}/{3 * 10**300 + 1}")
+    assert "too long" not in check_text(json.dumps(middling))[0].reason
+
+
 def test_a_field_given_twice_is_refused(document):
     text = json.dumps(document).replace('"claim": {', '"claim": {"peak": "1", ', 1)
     assert not all(f.valid for f in check_text(text))
