@@ -3367,14 +3367,18 @@ def main(arguments: Sequence[str]) -> int:
     if len(arguments) != 1:
         sys.stderr.write("usage: python -I -S checker.py FILE\n")
         return 2
-    sys.set_int_max_str_digits(0)
     try:
         text = Path(arguments[0]).read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         sys.stderr.write(f"cannot read {arguments[0]}: {error}\n")
         return 2
-    findings = check_text(text)
-    sys.stdout.write(report(findings))
+    digits = sys.get_int_max_str_digits()
+    sys.set_int_max_str_digits(0)
+    try:
+        findings = check_text(text)
+        sys.stdout.write(report(findings))
+    finally:
+        sys.set_int_max_str_digits(digits)
     return 0 if all(finding.valid for finding in findings) else 1
 
 

@@ -2,6 +2,7 @@
 
 import json
 import random
+import sys
 from dataclasses import replace
 from fractions import Fraction as F
 
@@ -222,7 +223,9 @@ def test_names_cannot_write_verdicts(name, tmp_path, capsys):
     document["parts"][0]["certificates"].append({"kind": name})
     path = tmp_path / "file.json"
     path.write_text(json.dumps(document))
+    digits = sys.get_int_max_str_digits()
     assert checker.main([str(path)]) == 1
+    assert sys.get_int_max_str_digits() == digits
     printed = capsys.readouterr().out
     assert [line.split()[0] for line in printed.splitlines() if line[:1] not in (" ", "1")] == [
         "VALID",
