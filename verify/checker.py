@@ -605,7 +605,10 @@ RESERVED = frozenset(
 Triple = list[Poly]
 
 
-def cross(x: Triple, y: Triple) -> Triple:
+Entry = TypeVar("Entry", int, Fraction, Poly)
+
+
+def cross(x: Sequence[Entry], y: Sequence[Entry]) -> list[Entry]:
     """Return x cross y."""
     return [x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]]
 
@@ -3017,7 +3020,7 @@ class Transfer:
     @property
     def momentum(self) -> Vector:
         """J w at the start."""
-        return [sum((x * y for x, y in zip(row, self.rate, strict=True)), Fraction(0)) for row in self.J]
+        return image(self.J, self.rate)
 
     def describe(self) -> list[str]:
         """Return the transfer for people."""
@@ -3177,7 +3180,7 @@ def coast_series(B: list[list[int]], g: list[int], p: list[int]) -> tuple[list[l
             break
         pairs = [(i, k - i) for i in range(k + 1)]
         scale = (k + 1) << PEAK_COAST_BITS
-        turns = [vector_product(G[i], U[j]) for i, j in pairs]
+        turns = [cross(G[i], U[j]) for i, j in pairs]
         moves = [quaternion_times(Q[i], [0, *U[j]]) for i, j in pairs]
         G.append([sum(c) // scale for c in zip(*turns, strict=True)])
         Q.append([sum(c) // (2 * scale) for c in zip(*moves, strict=True)])
@@ -3215,12 +3218,12 @@ def require_growth(gauge: Gauge, H: Vector, mu: Fraction, nu: Fraction) -> None:
     for h in unit:
         w = image(gauge.inverse, h)
         moved = [image(gauge.inverse, y) for y in unit]
-        held = [image(gauge.J, vector_product(w, c)) for c in moved]
-        parted = [vector_product(h, c) for c in moved]
+        held = [image(gauge.J, cross(w, c)) for c in moved]
+        parted = [cross(h, c) for c in moved]
         stretch.append(
             [[x - y for x, y in zip(a, b, strict=True)] for a, b in zip(parted, held, strict=True)]
         )
-        turning.append([vector_product(y, w) for y in unit])
+        turning.append([cross(y, w) for y in unit])
     square = sum((x * x for x in H), Fraction(0))
     for M, L in zip(gauge.rows, gauge.levels, strict=True):
         for rate, X in ((mu, stretch), (nu, turning)):
@@ -3248,11 +3251,6 @@ def require_eigenvalues_within(M: Matrix, X: list[Matrix], square: Fraction, bou
 def image(A: Matrix, x: Vector) -> Vector:
     """Return A x."""
     return [sum((a * b for a, b in zip(row, x, strict=True)), Fraction(0)) for row in A]
-
-
-def vector_product(x: Sequence[Number], y: Sequence[Number]) -> list[Number]:
-    """Return x cross y."""
-    return [x[i - 2] * y[i - 1] - x[i - 1] * y[i - 2] for i in range(3)]
 
 
 def exponential_above(x: Fraction) -> Fraction:

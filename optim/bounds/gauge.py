@@ -28,6 +28,7 @@ from ..norms import Euclidean, LargestComponent, Norm, ThrusterAxes
 from .chart import Vector, square_root
 from .constraints import CutConstraint, RateConstraint
 from .momentum_sets import (
+    IDENTITY,
     MomentumSet,
     Row,
     TaylorBoxes,
@@ -179,8 +180,7 @@ def invariant_set(body: RigidBody, norm: Norm) -> GaugeSet:
     inverse = exact_inverse(body.exact_inertia)
     low = 1 / greatest_inertia_above(body)
     high = 1 / least_inertia_below(body)
-    identity = _combination(inverse, Fraction(0), Fraction(1))
-    rows = [identity]
+    rows = [IDENTITY]
     if not has_equal_inertias(body):
         rows += [_combination(inverse, Fraction(1), -low), _combination(inverse, Fraction(-1), high)]
     levels = [_largest_form(row, vertices) for row in rows]
