@@ -25,7 +25,7 @@ from common import J1, LAW, PAPER, machine, need, table
 from intermit.models.ensemble import simulate_ensemble
 from intermit.models.lowering import BlockFunction, heyoka_available, sample_function, shared, walk
 from intermit.models.schedule import Hermite, Window, build_schedule
-from intermit.verify.excitation import excitation
+from intermit.verify.schedule.excitation import excitation
 from samples import BODY, CONSTANTS, PARAMETERS, UNIFORM, check_function, states
 from trajectories import starts
 

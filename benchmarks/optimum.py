@@ -32,18 +32,10 @@ import scipy.sparse  # noqa: F401
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import Hermite, Window, build_schedule
 from intermit.optim.norms import Euclidean, LargestComponent, Norm
-from intermit.optim.peak import (
-    NonlinearProgram,
-    SequentialConvex,
-    TorqueHistory,
-    curvature,
-    fly_again,
-    guess,
-    mesh,
-    propagate,
-    scaling,
-    shooting,
-)
+from intermit.optim.peak import NonlinearProgram, SequentialConvex, TorqueHistory, fly_again
+from intermit.optim.peak.search import guess
+from intermit.optim.peak.solvers import curvature
+from intermit.optim.peak.transcription import mesh, propagate, scaling, shooting
 from intermit.optim.problem import TransferProblem
 
 CELLS = 10

@@ -150,12 +150,7 @@ def derivative_check(count: int) -> Any:
     """The check itself, sampling, reductions and search included."""
     from fractions import Fraction as F
 
-    from intermit.verify.derivative import (
-        SampledDomain,
-        Sampling,
-        derivative_function,
-        sample_derivative,
-    )
+    from intermit.verify.sampling import SampledDomain, Sampling, derivative_function, sample_derivative
 
     domain = SampledDomain(
         rate=F(1), controller=((F("0.15"), F(2)), (F(0), F(6))), names=("R", "k"), gain=F(1), gain_rate=F(2)

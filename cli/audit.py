@@ -11,7 +11,7 @@ def run(json: JsonFile = None, debug: Debug = False) -> int:
     Exit code 0 if every misprint is shown (printed version refuted, corrected one proved), else 3.
     """
     del debug
-    from ..study.audit import audit_record, run_audit
+    from ..study.paper.audit_record import audit_record, run_audit
     from .console import progress
     from .finish import finish
 

@@ -32,8 +32,8 @@ def run(
     """
     del debug
     from ..scenario import load_scenario
-    from ..study.certify import certify
-    from ..study.lower_bounds import asks_for_optimum
+    from ..study.certify.run import certify
+    from ..study.optimum.lower_bounds import asks_for_optimum
     from ..verify.lyapunov import certificates_of
     from .console import note, progress
 

@@ -31,8 +31,8 @@ def run(
     """
     del debug
     from ..scenario import load_scenario
-    from ..study.check import CheckOptions, run_check
-    from ..study.counting import exit_code
+    from ..study.check.run import CheckOptions, run_check
+    from ..study.claims.counting import exit_code
     from .check_page import print_check
     from .console import note, output, progress
 
@@ -51,7 +51,7 @@ def run(
     print_check(output(), studies)
     if json is not None:
         from ..reports.record import write_record_to
-        from ..study.check_record import check_record
+        from ..study.check.record import check_record
 
         write_record_to(check_record(studies[0]), json)
     note(f"{perf_counter() - began:.1f} s")

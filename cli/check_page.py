@@ -7,7 +7,7 @@ from string import ascii_uppercase
 from typing import TYPE_CHECKING
 
 from ..reports.numbers import write
-from ..study.run import metrics
+from ..study.simulated_run import metrics
 from ..verify.verdict import Claim, Verdict
 from .claim_tables import STYLES, Column, number_table, plain_table, verdict_table, witness_text
 
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
-    from ..study.case import Case
-    from ..study.check import CheckStudy
+    from ..study.check.case import Case
+    from ..study.check.run import CheckStudy
 
 FUNCTION_NOT_LAW = (
     "V' <= 0 and the conditions on lambda are about one storage function, not about the laws: "

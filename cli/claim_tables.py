@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, final
 
 from ..reports.numbers import write
-from ..study.claims import quantity_entry
-from ..study.keys import order_of
+from ..study.claims.entries import quantity_entry
+from ..study.claims.keys import order_of
 from ..verify.verdict import Claim, Quantity, Verdict, Witness
 
 if TYPE_CHECKING:

@@ -21,7 +21,7 @@ def run(
     """Put every law of a scenario beside the optimum for its own settling time, with a certified bound."""
     del debug
     from ..scenario import law_from_words, load_scenario, with_laws
-    from ..study.compare import comparison_record, run_comparison
+    from ..study.compare.run import comparison_record, run_comparison
     from .console import progress
     from .finish import finish
 

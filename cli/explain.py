@@ -10,7 +10,7 @@ import typer
 from .options import Debug, InputError
 
 if TYPE_CHECKING:
-    from ..study.check import CheckStudy
+    from ..study.check.run import CheckStudy
 
 
 def run(
@@ -24,7 +24,7 @@ def run(
 ) -> None:
     """State a claim with its numbers, its evidence and its source; without a key, list them all."""
     del debug
-    from ..study.keys import CLAIM_KEYS
+    from ..study.claims.keys import CLAIM_KEYS
     from .console import output
     from .explain_page import print_claim, print_found, print_keys
 
@@ -41,7 +41,7 @@ def run(
 
 def _study(path: Path) -> CheckStudy:
     from ..scenario import load_scenario
-    from ..study.check import CheckOptions, run_check
+    from ..study.check.run import CheckOptions, run_check
     from .console import progress
 
     loaded = load_scenario(path)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from ..study.keys import CLAIM_KEYS, ClaimKey
+from ..study.claims.keys import CLAIM_KEYS, ClaimKey
 from ..verify.verdict import Claim, Verdict
 from .claim_tables import STYLES, plain_table, quantity_text, witness_text
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
-    from ..study.check import CheckStudy
+    from ..study.check.run import CheckStudy
 
 
 def print_keys(console: Console) -> None:

@@ -44,7 +44,7 @@ def run(
     """Find the least peak torque any controller could do with through the windows."""
     del debug
     from ..scenario import load_scenario
-    from ..study.optimum import NormKey, OptimumOptions, run_optimum
+    from ..study.optimum.run import NormKey, OptimumOptions, run_optimum
     from .console import note, output, progress
     from .optimum_page import print_optimum
 
@@ -69,7 +69,7 @@ def run(
         study = run_optimum(loaded, options, step)
     print_optimum(output(), study)
     if certificate is not None:
-        from ..study.lower_bounds import bound_claim
+        from ..study.optimum.lower_bounds import bound_claim
         from ..verify.certificates import certificate_text
         from ..verify.lyapunov import certificates_of
 
@@ -86,7 +86,7 @@ def run(
             note("no bound could be certified: no file written")
     if json is not None:
         from ..reports.record import write_record_to
-        from ..study.optimum_record import optimum_record
+        from ..study.optimum.record import optimum_record
 
         write_record_to(optimum_record(study), json)
     note(f"{perf_counter() - began:.1f} s")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from ..optim.peak import Standing
 from ..reports.numbers import write
 from ..reports.parts import quantity
-from ..study.optimum_record import (
+from ..study.optimum.record import (
     impulse_words,
     least_impulse_words,
     least_time_words,
@@ -21,7 +21,7 @@ from .claim_tables import plain_table
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from ..study.optimum import Optimum, OptimumStudy
+    from ..study.optimum.run import Optimum, OptimumStudy
 
 STYLES = {Standing.CHECKED: "bold green", Standing.IMPOSSIBLE: "bold red", Standing.UNDECIDED: "bold yellow"}
 MOST_SWITCHES = 12

@@ -26,7 +26,7 @@ def run(
     from importlib.resources import as_file, files
 
     from ..scenario import load_scenario
-    from ..study.paper import paper_record, run_paper
+    from ..study.paper.figures import paper_record, run_paper
     from .console import progress
     from .finish import finish
 

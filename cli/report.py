@@ -75,8 +75,8 @@ def _study(
     from ..reports.build import exit_code, write_report
     from ..reports.folder import refuse
     from ..scenario import load_scenario
-    from ..study.check import CheckOptions, CheckStudy
-    from ..study.report import ReportOptions, run_report
+    from ..study.check.run import CheckOptions, CheckStudy
+    from ..study.report.run import ReportOptions, run_report
     from .check_page import print_check
     from .console import note, output, progress
 

@@ -24,7 +24,7 @@ def run(
     from concurrent.futures import ProcessPoolExecutor
 
     from ..scenario import load_scenario
-    from ..study.schedules import run_schedule_study, schedule_record
+    from ..study.sweep.run import run_schedule_study, schedule_record
     from .console import progress
     from .finish import finish
 

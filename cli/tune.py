@@ -30,7 +30,7 @@ def run(
     """Find the parameters with the least peak torque that settle in time, under certified conditions."""
     del debug
     from ..scenario import load_scenario
-    from ..study.tune import front_record, run_front, run_tuning, tuning_record
+    from ..study.tune.run import front_record, run_front, run_tuning, tuning_record
     from .console import progress
     from .finish import finish
 

@@ -3,7 +3,7 @@
 Full thrust through windows only: the closed loop is x' = (A - g(t) B K) x, linear with piecewise
 polynomial coefficients. Its transition matrix is a Taylor series with an exact recurrence, so no
 step-size control is needed and no knot is crossed. Whether the schedule excites persistently is
-`intermit.verify.excitation`'s question, for g is the same.
+`intermit.verify.schedule.excitation`'s question, for g is the same.
 """
 
 from __future__ import annotations

@@ -11,9 +11,9 @@ from hostile_scenarios import shifted
 from intermit.models.laws import AdaptiveScaling, PersistenceFilter
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import Hermite, Ramps, Schedule, Window, build_schedule
-from intermit.verify.floor.certify import FloorOptions
-from intermit.verify.floor.comparison import BodyBounds
-from intermit.verify.floor.question import FloorQuestion
+from intermit.verify.filter.certify import FloorOptions
+from intermit.verify.filter.comparison import BodyBounds
+from intermit.verify.filter.question import FloorQuestion
 
 
 def sized_body(rng: np.random.Generator) -> RigidBody:

@@ -10,13 +10,13 @@ from intermit.models.ensemble import MetricOptions, simulate_ensemble
 from intermit.models.laws import AdaptiveScaling, PersistenceFilter
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import Hermite, Ramps, Window, build_schedule
-from intermit.verify.floor.certify import FloorOptions
-from intermit.verify.floor.claims import reaches_far_enough
-from intermit.verify.floor.comparison import BodyBounds
-from intermit.verify.floor.convergence import envelope
-from intermit.verify.floor.question import FloorQuestion
-from intermit.verify.floor.study import FloorAnswer, answer
-from intermit.verify.floor.worst_found import _Shape
+from intermit.verify.filter.answer import FloorAnswer, answer
+from intermit.verify.filter.certify import FloorOptions
+from intermit.verify.filter.claims import reaches_far_enough
+from intermit.verify.filter.comparison import BodyBounds
+from intermit.verify.filter.convergence import envelope
+from intermit.verify.filter.question import FloorQuestion
+from intermit.verify.filter.worst_found import _Shape
 
 TOLERANCE = 1e-7
 """Relative allowance for the simulation's own error (it keeps 1e-9)."""

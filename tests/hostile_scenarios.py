@@ -17,9 +17,9 @@ from intermit.models.schedule import (
 )
 from intermit.models.schedule.measured import ThrustSample, measured_schedule
 from intermit.models.schedule.polynomial import compose_affine
-from intermit.verify.floor.certify import FloorOptions
-from intermit.verify.floor.comparison import BodyBounds
-from intermit.verify.floor.question import FloorQuestion
+from intermit.verify.filter.certify import FloorOptions
+from intermit.verify.filter.comparison import BodyBounds
+from intermit.verify.filter.question import FloorQuestion
 
 
 def shifted(schedule: Schedule, by: F) -> Schedule:

@@ -1,6 +1,6 @@
 """Certified lower bounds of the peak torque through windows."""
 
 from .bound import LowerBound, NamedBound, certified_lower_bound
-from .path import PathOptions
+from .potential.path import PathOptions
 
 __all__ = ["LowerBound", "NamedBound", "PathOptions", "certified_lower_bound"]

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
 
-from .coast import Coast
-from .components import ComponentBounds, Widths
-from .deviation import Growth
-from .momentum_sets import MomentumSet
-from .path import PathBound
+from .potential.path import PathBound
+from .sets.momentum_sets import MomentumSet
+from .windows.coast import Coast
+from .windows.components import ComponentBounds, Widths
+from .windows.deviation import Growth
 
 
 @final

@@ -15,16 +15,16 @@ import numpy as np
 from ..norms import Euclidean, LargestComponent
 from ..problem import TransferProblem
 from .argument import Argument, ComponentsArgument, Departure, MomentumArgument, PathArgument
-from .cache import remembered
-from .chart import Quaternion, arc_to_identity
-from .coast import Coast, coasts
-from .components import Sides, Widths, component_bounds, peak_from_components
-from .deviation import deviation_above, growth_of_deviations
-from .gauge import GaugeSet, invariant_set, longest_vertex
-from .momentum_sets import MomentumSet, UnitBall
-from .path import PathBound, PathOptions, path_bound
-from .separation import Target
-from .travel import WindowTravel, least_peak, momentum_peak, rounded_down
+from .potential.cache import remembered
+from .potential.path import PathBound, PathOptions, path_bound
+from .potential.separation import Target
+from .sets.chart import Quaternion, arc_to_identity
+from .sets.gauge import GaugeSet, invariant_set, longest_vertex
+from .sets.momentum_sets import MomentumSet, UnitBall
+from .windows.coast import Coast, coasts
+from .windows.components import Sides, Widths, component_bounds, peak_from_components
+from .windows.deviation import deviation_above, growth_of_deviations
+from .windows.travel import WindowTravel, least_peak, momentum_peak, rounded_down
 
 TRIALS = (1.0, 1.03, 1.07, 1.12, 1.18, 1.25, 1.35, 1.5, 1.75)
 """Trial peaks of the bound by components over the best other bound: any are valid, the best is kept."""

@@ -17,12 +17,12 @@ from ..norms import Euclidean, LargestComponent, Norm, ThrusterAxes
 from ..problem import TransferProblem
 from .argument import Argument, ComponentsArgument, MomentumArgument, PathArgument
 from .bound import LowerBound, NamedBound, start_momentum
-from .chart import square_root
-from .gauge import GaugeSet, torque_vertices
-from .momentum_sets import MomentumSet, greatest_inertia_above, least_inertia_below
-from .path import PathBound
-from .separation import Separation
-from .travel import WindowTravel, least_peak, rounded_down
+from .potential.path import PathBound
+from .potential.separation import Separation
+from .sets.chart import square_root
+from .sets.gauge import GaugeSet, torque_vertices
+from .sets.momentum_sets import MomentumSet, greatest_inertia_above, least_inertia_below
+from .windows.travel import WindowTravel, least_peak, rounded_down
 
 KIND = "peak-lower-bound"
 _FINE = 2**120

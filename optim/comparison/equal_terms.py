@@ -98,7 +98,7 @@ def on_equal_terms(run: LawRun, norm: NormName) -> EqualTerms:
     """
     from ..bounds.bound import certified_lower_bound
     from ..peak import minimum_peak
-    from ..peak.result import Standing
+    from ..peak.search.result import Standing
 
     problem = problem_of(run, norm)
     answer = minimum_peak(problem)

@@ -1,15 +1,15 @@
 """Least peak torque through the windows: transcription, two solvers, verification, multi-start."""
 
-from .any_torque import FlownTorque, fly_torque
-from .history import TorqueHistory
-from .minimum_impulse import LeastImpulseFound, minimum_impulse
-from .minimum_peak import minimum_peak
-from .minimum_time import LeastTime, minimum_time
-from .nlp import NonlinearProgram
-from .options import MultiStart, Refinement
-from .result import PeakAnswer, Search, Standing, Start, Switching
-from .scp import SequentialConvex
-from .verify_answer import FlownHistory, fly_again
+from .check.any_torque import FlownTorque, fly_torque
+from .check.verify_answer import FlownHistory, fly_again
+from .search.minimum_impulse import LeastImpulseFound, minimum_impulse
+from .search.minimum_peak import minimum_peak
+from .search.minimum_time import LeastTime, minimum_time
+from .search.options import MultiStart, Refinement
+from .search.result import PeakAnswer, Search, Standing, Start, Switching
+from .solvers.nlp import NonlinearProgram
+from .solvers.scp import SequentialConvex
+from .transcription.history import TorqueHistory
 
 __all__ = [
     "FlownHistory",

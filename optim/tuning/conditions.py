@@ -7,11 +7,11 @@ from fractions import Fraction
 from typing import final
 
 from ...models.laws import Law
-from ...verify.floor.certify import certify_floor
-from ...verify.floor.comparison import BodyBounds
-from ...verify.floor.question import FloorQuestion, initial_gain_term
-from ...verify.floor.sets import InitialSet
-from ...verify.floor.study import answer
+from ...verify.filter.answer import answer
+from ...verify.filter.certify import certify_floor
+from ...verify.filter.comparison import BodyBounds
+from ...verify.filter.question import FloorQuestion, initial_gain_term
+from ...verify.filter.sets import InitialSet
 from ...verify.verdict import Verdict
 from ..comparison.measure import Task
 

@@ -63,7 +63,7 @@ def best_possible(task: Task, settle: Fraction, norm: str) -> BestPossible:
     """Optimum and certified bound for the task's terminal balls at a given time."""
     from ..bounds.bound import certified_lower_bound
     from ..peak import minimum_peak
-    from ..peak.result import Standing
+    from ..peak.search.result import Standing
 
     problem = TransferProblem.through(
         task.schedule, body=task.body, horizon=settle, attitude=task.quaternion, rate=task.rate,

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from edge_scenarios import edge_question
 from floor_attack import FIGURES, TOLERANCE, Adversary, crossings
-from intermit.verify.floor.question import FloorQuestion
-from intermit.verify.floor.study import answer
-from intermit.verify.floor.worst_found import _Shape
+from intermit.verify.filter.answer import answer
+from intermit.verify.filter.question import FloorQuestion
+from intermit.verify.filter.worst_found import _Shape
 from problems import ADAPTIVE, J1, PERSISTENCE, paper_schedule
 
 ADVERSARY = Adversary(batches=(24, 13, 13), most_periods=12)

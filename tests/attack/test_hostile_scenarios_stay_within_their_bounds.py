@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from hostile_scenarios import hostile_attack, hostile_question
 from intermit.models.laws import AdaptiveScaling, PersistenceFilter
-from intermit.verify.floor.certify import FloorOptions, certify_floor, comparison_system
-from intermit.verify.floor.comparison import BodyBounds
-from intermit.verify.floor.convergence import analyse_convergence
-from intermit.verify.floor.question import FloorQuestion
-from intermit.verify.floor.sets import InitialSet
-from intermit.verify.floor.study import answer
+from intermit.verify.filter.answer import answer
+from intermit.verify.filter.certify import FloorOptions, certify_floor, comparison_system
+from intermit.verify.filter.comparison import BodyBounds
+from intermit.verify.filter.convergence import analyse_convergence
+from intermit.verify.filter.question import FloorQuestion
+from intermit.verify.filter.sets import InitialSet
 from problems import J1, PERSISTENCE, paper_schedule
 
 TOLERANCE = 1e-6

@@ -11,13 +11,13 @@ from intermit.models.laws import PersistenceFilter
 from intermit.models.schedule import Hermite, Window, build_schedule
 from intermit.verify import checker
 from intermit.verify.certificates import certificate_text
-from intermit.verify.enclosure.stepping import Stepper
-from intermit.verify.floor.certificate import _steps
-from intermit.verify.floor.certify import FloorOptions
-from intermit.verify.floor.persistence import PersistenceSystem
-from intermit.verify.floor.question import FloorQuestion
-from intermit.verify.floor.sets import InitialSet
-from intermit.verify.floor.study import answer
+from intermit.verify.filter.answer import answer
+from intermit.verify.filter.certificate import _steps
+from intermit.verify.filter.certify import FloorOptions
+from intermit.verify.filter.persistence import PersistenceSystem
+from intermit.verify.filter.question import FloorQuestion
+from intermit.verify.filter.sets import InitialSet
+from intermit.verify.flow.stepping import Stepper
 from problems import J1, paper_schedule
 
 QUESTION = FloorQuestion(

@@ -8,9 +8,9 @@ import pytest
 from intermit.cli.app import run
 from intermit.models.laws import AdaptiveScaling, AdaptiveScalingAsPrinted
 from intermit.models.simulation import simulate
-from intermit.verify.audit import audit
-from intermit.verify.audit.item import vanishes
-from intermit.verify.audit.tables import CORRECTED_ROWS, PRINTED_ROWS
+from intermit.study.paper.audit import audit
+from intermit.study.paper.audit.item import vanishes
+from intermit.study.paper.audit.tables import CORRECTED_ROWS, PRINTED_ROWS
 from intermit.verify.verdict import Verdict
 from problems import J1, paper_schedule
 

@@ -13,14 +13,14 @@ from intermit.models.schedule import PiecewisePolynomial
 from intermit.optim.bounds.argument import PathArgument
 from intermit.optim.bounds.bound import NamedBound, best_departure, start_momentum
 from intermit.optim.bounds.certificate import peak_certificate
-from intermit.optim.bounds.chart import arc_to_identity, chart_between
-from intermit.optim.bounds.gauge import invariant_set
-from intermit.optim.bounds.momentum_sets import UnitBall
-from intermit.optim.bounds.path import PathBound
-from intermit.optim.bounds.polynomials import AXES
-from intermit.optim.bounds.prove import BranchAndBound
-from intermit.optim.bounds.separation import Target, proved_separation
-from intermit.optim.bounds.travel import WindowTravel, least_peak
+from intermit.optim.bounds.potential.path import PathBound
+from intermit.optim.bounds.potential.prove import BranchAndBound
+from intermit.optim.bounds.potential.separation import Target, proved_separation
+from intermit.optim.bounds.sets.chart import arc_to_identity, chart_between
+from intermit.optim.bounds.sets.gauge import invariant_set
+from intermit.optim.bounds.sets.momentum_sets import UnitBall
+from intermit.optim.bounds.sets.polynomials import AXES
+from intermit.optim.bounds.windows.travel import WindowTravel, least_peak
 from intermit.optim.norms import Euclidean, LargestComponent
 from intermit.optim.peak import MultiStart, Refinement, minimum_peak
 from intermit.optim.problem import Terminal, TransferProblem, quaternion_from_axis_angle

@@ -10,8 +10,8 @@ import pytest
 from intermit.cli.app import run
 from intermit.optim.bounds import certified_lower_bound
 from intermit.scenario import load_scenario
-from intermit.study.lower_bounds import below, bound_claim, own_bound_claim
-from intermit.study.optimum import norm_of, transfer
+from intermit.study.optimum.lower_bounds import below, bound_claim, own_bound_claim
+from intermit.study.optimum.run import norm_of, transfer
 from intermit.verify import checker
 from intermit.verify.verdict import Verdict
 

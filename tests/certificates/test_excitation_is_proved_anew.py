@@ -8,7 +8,7 @@ from intermit.models.schedule import Ramps, Window, build_schedule
 from intermit.verify import checker
 from intermit.verify.certificates import certificate_text, exact_text
 from intermit.verify.certificates.excitation import excitation_certificate
-from intermit.verify.zero_runs import longest_zero_run
+from intermit.verify.schedule.zero_runs import longest_zero_run
 from problems import paper_schedule
 
 TABLE = build_schedule(

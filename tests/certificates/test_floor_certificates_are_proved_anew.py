@@ -9,11 +9,11 @@ import pytest
 from intermit.models.schedule import Hermite, Window, build_schedule
 from intermit.verify import checker
 from intermit.verify.certificates import certificate_text
-from intermit.verify.floor.certificate import scaled_integers
-from intermit.verify.floor.certify import FloorOptions
-from intermit.verify.floor.convergence import analyse_convergence
-from intermit.verify.floor.question import FloorQuestion
-from intermit.verify.floor.study import answer
+from intermit.verify.filter.answer import answer
+from intermit.verify.filter.certificate import scaled_integers
+from intermit.verify.filter.certify import FloorOptions
+from intermit.verify.filter.convergence import analyse_convergence
+from intermit.verify.filter.question import FloorQuestion
 from problems import ADAPTIVE, J1, PERSISTENCE, paper_schedule
 
 QUESTION = FloorQuestion(

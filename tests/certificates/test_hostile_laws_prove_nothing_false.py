@@ -12,7 +12,7 @@ from intermit.models.laws import Control, ControllerState, Law
 from intermit.models.laws.scaled import filter_rate, scaled_torque
 from intermit.models.rigid_body import RigidBody
 from intermit.models.time_signals import WindowClosing
-from intermit.verify.filter_law import follows_filter
+from intermit.verify.filter.recognise import follows_filter
 from intermit.verify.lyapunov import lyapunov_claims, sharp_condition, sharp_threshold
 from intermit.verify.verdict import Verdict
 from problems import ADAPTIVE, J1, PERSISTENCE, paper_schedule

@@ -12,11 +12,11 @@ from intermit.cli.app import run
 from intermit.models.linear import LinearPlant
 from intermit.models.schedule import Hermite, Window, build_schedule
 from intermit.scenario import load_scenario
-from intermit.study.check import scenario_claims
+from intermit.study.check.run import scenario_claims
 from intermit.verify import checker
 from intermit.verify.certificates import as_text, certificate_text
 from intermit.verify.certificates.schedule import schedule_data
-from intermit.verify.linear_stability import spectral_radius, stability_claim
+from intermit.verify.linear.stability import spectral_radius, stability_claim
 from intermit.verify.verdict import Verdict
 from problems import paper_schedule
 

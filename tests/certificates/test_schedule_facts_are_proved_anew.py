@@ -17,8 +17,8 @@ from intermit.models.schedule import (
 from intermit.verify import checker
 from intermit.verify.certificates import certificate_text, exact_text
 from intermit.verify.certificates.facts import fact_certificate, filter_start_certificate
-from intermit.verify.filter_start import filter_start_claim
-from intermit.verify.schedule_facts import schedule_claims
+from intermit.verify.schedule.facts import schedule_claims
+from intermit.verify.schedule.filter_start import filter_start_claim
 from intermit.verify.verdict import Verdict
 from problems import ADAPTIVE, PERSISTENCE, paper_schedule
 

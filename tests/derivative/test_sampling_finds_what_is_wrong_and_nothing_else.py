@@ -18,7 +18,7 @@ from intermit.models.laws import (
     PersistenceFilterAsPrinted,
 )
 from intermit.models.rigid_body import RigidBody
-from intermit.verify.derivative import (
+from intermit.verify.sampling import (
     DerivativeSamples,
     SampledDerivative,
     SampledDomain,
@@ -28,7 +28,7 @@ from intermit.verify.derivative import (
     sample_derivative,
     with_samples,
 )
-from intermit.verify.derivative.claim import ContradictionError
+from intermit.verify.sampling.claim import ContradictionError
 from intermit.verify.verdict import Claim, Evidence, EvidenceKind, Verdict
 
 J1 = RigidBody.from_rows([["3.05", "0.14", "0.05"], ["0.14", "2.66", "0.12"], ["0.05", "0.12", "2.18"]])

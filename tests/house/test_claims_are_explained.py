@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from intermit.study.keys import CLAIM_KEYS, order_of
+from intermit.study.claims.keys import CLAIM_KEYS, order_of
 
 
 @pytest.mark.parametrize("key", list(CLAIM_KEYS))

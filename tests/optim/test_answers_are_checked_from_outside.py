@@ -16,10 +16,10 @@ from intermit.optim.peak import (
     fly_again,
     minimum_peak,
 )
-from intermit.optim.peak.guess import first_guess
-from intermit.optim.peak.mesh import build_mesh
-from intermit.optim.peak.scaling import scale
-from intermit.optim.peak.shooting import Shooting
+from intermit.optim.peak.search.guess import first_guess
+from intermit.optim.peak.transcription.mesh import build_mesh
+from intermit.optim.peak.transcription.scaling import scale
+from intermit.optim.peak.transcription.shooting import Shooting
 from transfers import TETRAHEDRON, paper_transfer, random_transfer
 
 ONE = MultiStart(starts=1)

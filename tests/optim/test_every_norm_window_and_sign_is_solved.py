@@ -109,7 +109,7 @@ def test_both_solvers_alone_reach_the_same_refined_optimum(norm):
 def test_the_default_falls_back_on_the_reference(monkeypatch):
     problem = paper_transfer(LargestComponent(), horizon="19.22")
     expected = peak(problem)
-    module = import_module("intermit.optim.peak.minimum_peak")
+    module = import_module("intermit.optim.peak.search.minimum_peak")
     monkeypatch.setattr(module, "SequentialConvex", lambda: SequentialConvex(max_iterations=3))
     answer = minimum_peak(problem, search=ONE, refinement=ROUGH)
     assert answer.solver == "nonlinear program"
@@ -123,7 +123,7 @@ def test_the_default_falls_back_on_the_reference(monkeypatch):
 
 
 def test_a_lower_peak_that_could_not_be_checked_is_told(monkeypatch):
-    finish = import_module("intermit.optim.peak.finish").Finish
+    finish = import_module("intermit.optim.peak.search.finish").Finish
     honest, calls = finish.__call__, []
 
     def doubtful(self, candidate):
@@ -143,7 +143,7 @@ def test_a_lower_peak_that_could_not_be_checked_is_told(monkeypatch):
 
 def test_an_optimum_that_failed_its_check_is_not_refined_again(monkeypatch):
     """Both starts towards +1 find the same optimum of this problem: it is refined once."""
-    finish = import_module("intermit.optim.peak.finish").Finish
+    finish = import_module("intermit.optim.peak.search.finish").Finish
     honest, signs = finish.__call__, []
 
     def doubtful(self, candidate):

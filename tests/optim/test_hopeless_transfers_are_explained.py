@@ -9,7 +9,7 @@ import pytest
 from intermit.models.schedule import Hermite, Window, build_schedule
 from intermit.optim.norms import Euclidean, LargestComponent, ThrusterAxes
 from intermit.optim.peak import MultiStart, Refinement, Standing, minimum_peak
-from intermit.optim.peak.explain import absorption_peak, explain, open_time, travel_peak
+from intermit.optim.peak.search.explain import absorption_peak, explain, open_time, travel_peak
 from intermit.optim.problem import Terminal, TransferProblem, WindowProfile
 from problems import J1, UNIT, paper_schedule
 from transfers import paper_transfer

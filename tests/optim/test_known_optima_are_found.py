@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from intermit.optim.norms import Euclidean, LargestComponent
 from intermit.optim.peak import MultiStart, Refinement, SequentialConvex, Standing, minimum_peak
-from intermit.optim.peak.guess import first_guess
-from intermit.optim.peak.mesh import build_mesh
-from intermit.optim.peak.scaling import scale
-from intermit.optim.peak.shooting import Shooting
+from intermit.optim.peak.search.guess import first_guess
+from intermit.optim.peak.transcription.mesh import build_mesh
+from intermit.optim.peak.transcription.scaling import scale
+from intermit.optim.peak.transcription.shooting import Shooting
 from problems import UNIT
 from transfers import HALF_TURN_TIME, open_transfer, paper_transfer
 

@@ -19,12 +19,12 @@ from intermit.optim.peak import (
     minimum_impulse,
     minimum_peak,
 )
-from intermit.optim.peak.goal import LeastImpulse
-from intermit.optim.peak.guess import first_guess
-from intermit.optim.peak.mesh import build_mesh
-from intermit.optim.peak.scaling import scale
-from intermit.optim.peak.shooting import Shooting
-from intermit.optim.peak.switching import switching_function
+from intermit.optim.peak.check.switching import switching_function
+from intermit.optim.peak.search.guess import first_guess
+from intermit.optim.peak.solvers.goal import LeastImpulse
+from intermit.optim.peak.transcription.mesh import build_mesh
+from intermit.optim.peak.transcription.scaling import scale
+from intermit.optim.peak.transcription.shooting import Shooting
 from transfers import TETRAHEDRON, open_transfer, paper_transfer, random_transfer
 
 ONE = MultiStart(starts=1)

@@ -10,8 +10,8 @@ import pytest
 from intermit.cli.app import run
 from intermit.reports.record import read_record
 from intermit.scenario import load_scenario
-from intermit.study.optimum import OptimumOptions, run_optimum
-from intermit.study.optimum_record import optimum_record
+from intermit.study.optimum.record import optimum_record
+from intermit.study.optimum.run import OptimumOptions, run_optimum
 
 SCENARIO = """
 [spacecraft]

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from intermit.optim.norms import Euclidean, LargestComponent
 from intermit.optim.peak import MultiStart, Refinement, SequentialConvex, minimum_peak
-from intermit.optim.peak.guess import first_guess
-from intermit.optim.peak.mesh import build_mesh
-from intermit.optim.peak.optimality import control_support
-from intermit.optim.peak.scaling import scale
-from intermit.optim.peak.shooting import Shooting
-from intermit.optim.peak.switching import GAUSS_NODES, switching_function
+from intermit.optim.peak.check.switching import GAUSS_NODES, switching_function
+from intermit.optim.peak.search.guess import first_guess
+from intermit.optim.peak.solvers.optimality import control_support
+from intermit.optim.peak.transcription.mesh import build_mesh
+from intermit.optim.peak.transcription.scaling import scale
+from intermit.optim.peak.transcription.shooting import Shooting
 from transfers import HALF_TURN_TIME, TETRAHEDRON, open_transfer, paper_transfer
 
 ONE = MultiStart(starts=1)

@@ -5,7 +5,7 @@ from fractions import Fraction as F
 
 import pytest
 from intermit.optim.comparison.measure import Task, run_law
-from intermit.optim.comparison.statements import StartData, statements, survey
+from intermit.study.paper.statements import StartData, statements, survey
 from problems import ADAPTIVE, J1, PERSISTENCE, TILTED, paper_schedule
 
 TASK = Task(J1, paper_schedule(), tuple(TILTED), (F(0),) * 3, F(1, 100), F(1, 100), F(56))

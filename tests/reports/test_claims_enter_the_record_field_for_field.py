@@ -4,7 +4,7 @@ from dataclasses import fields
 
 from intermit.reports import Record
 from intermit.reports.provenance import provenance
-from intermit.study.claims import claim_entry
+from intermit.study.claims.entries import claim_entry
 from intermit.verify.verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict, Witness
 
 

@@ -5,8 +5,8 @@ from fractions import Fraction
 
 import pytest
 from intermit.scenario import load_scenario
-from intermit.verify.excitation import excitation_claim
-from intermit.verify.schedule_facts import schedule_claims
+from intermit.verify.schedule.excitation import excitation_claim
+from intermit.verify.schedule.facts import schedule_claims
 from intermit.verify.verdict import Verdict
 
 NUMBER = 100_000

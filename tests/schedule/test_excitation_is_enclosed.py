@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from intermit.models.schedule import Hermite, PiecewisePolynomial, Ramps, Schedule, Window, build_schedule
 from intermit.models.schedule.polynomial import polynomial
-from intermit.verify import excitation as module
-from intermit.verify.excitation import excitation, excitation_claim
-from intermit.verify.moving_integral import MovingIntegral
-from intermit.verify.polynomial_range import least_value
+from intermit.verify.exact.polynomial_range import least_value
+from intermit.verify.schedule import excitation as module
+from intermit.verify.schedule.excitation import excitation, excitation_claim
+from intermit.verify.schedule.moving_integral import MovingIntegral
+from intermit.verify.schedule.zero_runs import default_length, longest_zero_run, missable_windows
 from intermit.verify.verdict import Verdict
-from intermit.verify.zero_runs import default_length, longest_zero_run, missable_windows
 
 F = Fraction
 
@@ -112,7 +112,7 @@ def test_screening_changes_nothing(seed, monkeypatch):
     length = F("1.2") * default_length(schedule)
     exact = excitation(schedule, length)
     monkeypatch.setattr(module, "LARGEST_EXACT", 0)
-    monkeypatch.setattr("intermit.verify.excitation_screen.FEW", 1)
+    monkeypatch.setattr("intermit.verify.schedule.excitation_screen.FEW", 1)
     screened = excitation(schedule, length)
     assert screened.exact_segments < exact.exact_segments / 4
     tolerance = F(1, 10**12) * length

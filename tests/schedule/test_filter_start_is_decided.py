@@ -10,7 +10,7 @@ from intermit.models.laws import PersistenceFilter
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import Hermite, Window, build_schedule
 from intermit.models.simulation import simulate
-from intermit.verify.filter_start import filter_start_claim, greatest_gain
+from intermit.verify.schedule.filter_start import filter_start_claim, greatest_gain
 from intermit.verify.verdict import Verdict
 
 SCHEDULE = build_schedule([Window(F(1, 100), F(321, 100))], Hermite(), period=F(8))

@@ -6,7 +6,7 @@ from fractions import Fraction as F
 
 import pytest
 from intermit.models.schedule import Hermite, Schedule, Window, build_schedule, longer_gap
-from intermit.verify.zero_runs import longest_zero_run
+from intermit.verify.schedule.zero_runs import longest_zero_run
 
 ONE = build_schedule([Window(F(1, 100), F(321, 100))], Hermite(), period=F(8))
 THREE = build_schedule([Window(F(0), F(2)), Window(F(3), F(5)), Window(F(9), F(10))], Hermite())

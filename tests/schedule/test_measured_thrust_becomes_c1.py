@@ -8,7 +8,7 @@ import pytest
 from intermit.models.schedule import ThrustSample, measured_schedule
 from intermit.models.schedule import polynomial as poly
 from intermit.models.schedule.measured import normalised, pchip_slopes
-from intermit.verify.schedule_facts import schedule_claims
+from intermit.verify.schedule.facts import schedule_claims
 from intermit.verify.verdict import Verdict
 
 F = Fraction

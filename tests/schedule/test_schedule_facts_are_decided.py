@@ -6,7 +6,7 @@ from fractions import Fraction
 import pytest
 from intermit.models.schedule import Hermite, PiecewisePolynomial, Ramps, Schedule, Window, build_schedule
 from intermit.models.schedule.polynomial import polynomial
-from intermit.verify.schedule_facts import schedule_claims
+from intermit.verify.schedule.facts import schedule_claims
 from intermit.verify.verdict import Verdict
 
 F = Fraction
@@ -161,7 +161,7 @@ def test_shortest_gap_is_the_margin_of_order():
 
 def test_work_grows_linearly_with_windows(monkeypatch):
     """Counted, not timed: polynomial evaluations do not grow with the windows that share a shape."""
-    from intermit.verify import schedule_timeline
+    from intermit.verify.schedule import timeline as schedule_timeline
 
     counts = []
     for number in (10, 1000):

@@ -12,9 +12,9 @@ from intermit.models.schedule import (
     unrolled,
     without_windows,
 )
-from intermit.verify.schedule_facts import schedule_claims
+from intermit.verify.schedule.facts import schedule_claims
+from intermit.verify.schedule.zero_runs import longest_zero_run
 from intermit.verify.verdict import Verdict
-from intermit.verify.zero_runs import longest_zero_run
 
 F = Fraction
 

@@ -9,9 +9,9 @@ import pytest
 from intermit.models.closed_loop import close_loop
 from intermit.models.laws import AdaptiveScaling
 from intermit.models.rigid_body import RigidBody
-from intermit.verify.derivative import SampledDomain, Sampling, derivative_function, sample_derivative
-from intermit.verify.derivative.sampling import KEPT, _Least
-from intermit.verify.derivative.sobol import PRIMITIVE, SobolRows
+from intermit.verify.sampling import SampledDomain, Sampling, derivative_function, sample_derivative
+from intermit.verify.sampling.sampling import KEPT, _Least
+from intermit.verify.sampling.sobol import PRIMITIVE, SobolRows
 from scipy.stats import qmc
 
 J1 = RigidBody.from_rows([["3.05", "0.14", "0.05"], ["0.14", "2.66", "0.12"], ["0.05", "0.12", "2.18"]])

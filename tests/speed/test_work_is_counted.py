@@ -12,7 +12,7 @@ from intermit.models.laws import AdaptiveScaling, PersistenceFilter
 from intermit.models.lowering import ArrayFunction, shared, walk
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import Hermite, Window, build_schedule
-from intermit.verify.excitation import excitation
+from intermit.verify.schedule.excitation import excitation
 
 J1 = RigidBody.from_rows([["3.05", "0.14", "0.05"], ["0.14", "2.66", "0.12"], ["0.05", "0.12", "2.18"]])
 PAPER = build_schedule(

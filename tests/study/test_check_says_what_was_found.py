@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from intermit.reports.record import read_record
-from intermit.study.keys import CLAIM_KEYS
+from intermit.study.claims.keys import CLAIM_KEYS
 
 ONE_LAW = '[[law]]\ntype = "persistence-filter"\n'
 Run = Callable[..., tuple[int, str, str]]

@@ -10,11 +10,11 @@ import pytest
 from intermit.models.laws import Law
 from intermit.models.schedule import Schedule, longer_gap
 from intermit.scenario import load_scenario
-from intermit.study.floor import floor_question, is_certified
-from intermit.study.margins import convergence_margins
-from intermit.study.run import Seen
-from intermit.verify.margin_search import greatest_certified, most_certified
-from intermit.verify.zero_runs import longest_zero_run
+from intermit.study.check.filter_question import floor_question, is_certified
+from intermit.study.check.margins import convergence_margins
+from intermit.study.simulated_run import Seen
+from intermit.verify.exact.margin_search import greatest_certified, most_certified
+from intermit.verify.schedule.zero_runs import longest_zero_run
 
 
 @pytest.mark.parametrize("threshold", [F(1, 7), F(3), F(29, 10), F(1000)])

@@ -7,9 +7,9 @@ from time import sleep
 from types import SimpleNamespace
 
 import pytest
-from intermit.study import jobs
-from intermit.study.case import CaseOptions, Decided
-from intermit.study.run import Seen
+from intermit.study.check import workers as jobs
+from intermit.study.check.case import CaseOptions, Decided
+from intermit.study.simulated_run import Seen
 
 LAWS = [SimpleNamespace(label=f"law {n}") for n in range(5)]
 

@@ -13,10 +13,10 @@ import pytest
 from intermit.models.laws import Control, Expression, Law, PlantSymbols, QuaternionPD, TimeSymbols
 from intermit.models.lowering import UnknownOperationError
 from intermit.models.simulation import DOP853, simulate
-from intermit.verify.enclosure import run as enclosed
-from intermit.verify.enclosure.run import EnclosedRun, ExactStart, NoEnclosureError
-from intermit.verify.floor.question import FloorQuestion
-from intermit.verify.torque_excess import refuted_limit, start_inside
+from intermit.verify.filter.question import FloorQuestion
+from intermit.verify.filter.torque_excess import refuted_limit, start_inside
+from intermit.verify.flow import run_enclosure as enclosed
+from intermit.verify.flow.run_enclosure import EnclosedRun, ExactStart, NoEnclosureError
 from intermit.verify.verdict import Claim, Verdict
 from problems import ADAPTIVE, J1, PERSISTENCE, paper_schedule
 

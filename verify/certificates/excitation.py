@@ -6,7 +6,7 @@ from fractions import Fraction
 
 from ...models.schedule import Schedule
 from .. import checker
-from ..excitation import excitation
+from ..schedule.excitation import excitation
 from .format import Certificate, certificate_text
 from .schedule import schedule_data
 

@@ -10,8 +10,8 @@ from typing import Any
 from ...models.laws import Law
 from ...models.schedule import Schedule
 from .. import checker
-from ..filter_start import greatest_gain_at
-from ..schedule_timeline import Timeline
+from ..schedule.filter_start import greatest_gain_at
+from ..schedule.timeline import Timeline
 from ..verdict import Claim, Verdict
 from .format import Certificate, certificate_text
 from .schedule import schedule_data

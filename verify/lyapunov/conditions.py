@@ -17,7 +17,7 @@ from itertools import product
 from ...models.rigid_body import RigidBody
 from ..certificates.format import Certificate
 from ..checker import Matrix, Vector
-from ..rational_quantity import rational_quantity
+from ..exact.rational_quantity import rational_quantity
 from ..verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict, Witness
 from .definiteness import factors, negative_direction, quadratic, shifted
 from .forms import inertia_data

@@ -10,7 +10,7 @@ from ...models.rigid_body import RigidBody
 from ...models.schedule import Schedule
 from ...models.schedule.polynomial import bernstein
 from ..certificates.format import Certificate
-from ..rational_quantity import rational_quantity
+from ..exact.rational_quantity import rational_quantity
 from ..verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict, Witness
 from .candidates import Candidate
 from .conditions import ExactRows, sharp_condition, vertices

@@ -9,7 +9,7 @@ from ...models.closed_loop import ClosedLoop
 from .. import checker
 from ..certificates.format import Certificate, certificate_text
 from ..certificates.program import NotAlgebraicError
-from ..rational_quantity import rational_quantity
+from ..exact.rational_quantity import rational_quantity
 from ..verdict import Claim, Evidence, EvidenceKind, Verdict, Witness
 from .candidates import Candidate
 from .exact_states import ExactDerivative, ExactRows, ExactState, rational_quaternion

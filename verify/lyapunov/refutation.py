@@ -13,7 +13,7 @@ from .. import checker
 from ..certificates.format import Certificate, certificate_text
 from ..certificates.program import NotAlgebraicError
 from ..checker import Matrix
-from ..rational_quantity import rational_quantity
+from ..exact.rational_quantity import rational_quantity
 from ..verdict import Witness
 from .candidates import Candidate
 from .conditions import ExactRows

@@ -9,11 +9,11 @@ import pytest
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import PiecewisePolynomial
 from intermit.optim.bounds.bound import best_departure, start_momentum
-from intermit.optim.bounds.coast import coasts
-from intermit.optim.bounds.deviation import Growth, deviation_above, growth_of_deviations
-from intermit.optim.bounds.gauge import invariant_set, torque_vertices
-from intermit.optim.bounds.momentum_sets import UnitBall
-from intermit.optim.bounds.travel import WindowTravel
+from intermit.optim.bounds.sets.gauge import invariant_set, torque_vertices
+from intermit.optim.bounds.sets.momentum_sets import UnitBall
+from intermit.optim.bounds.windows.coast import coasts
+from intermit.optim.bounds.windows.deviation import Growth, deviation_above, growth_of_deviations
+from intermit.optim.bounds.windows.travel import WindowTravel
 from intermit.optim.norms import Euclidean, LargestComponent, ThrusterAxes
 from intermit.optim.problem import TransferProblem, quaternion_from_axis_angle
 from intermit.verify import checker

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import PiecewisePolynomial
-from intermit.optim.bounds.components import (
+from intermit.optim.bounds.sets.gauge import invariant_set, torque_vertices
+from intermit.optim.bounds.windows.components import (
     Sides,
     component_bounds,
     gyroscopic_bound,
     gyroscopic_form,
     peak_from_components,
 )
-from intermit.optim.bounds.gauge import invariant_set, torque_vertices
-from intermit.optim.bounds.travel import WindowTravel
+from intermit.optim.bounds.windows.travel import WindowTravel
 from intermit.optim.norms import LargestComponent, ThrusterAxes
 
 J1 = RigidBody.from_rows([["3.05", "0.14", "0.05"], ["0.14", "2.66", "0.12"], ["0.05", "0.12", "2.18"]])

@@ -9,8 +9,8 @@ from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import PiecewisePolynomial
 from intermit.optim.bounds import PathOptions, certified_lower_bound
 from intermit.optim.norms import Euclidean, LargestComponent
-from intermit.optim.peak.minimum_peak import minimum_peak
-from intermit.optim.peak.options import MultiStart
+from intermit.optim.peak.search.minimum_peak import minimum_peak
+from intermit.optim.peak.search.options import MultiStart
 from intermit.optim.problem import TransferProblem, quaternion_from_axis_angle
 
 COARSE = PathOptions(degree=4, tolerance=4e-3, components=False)

@@ -7,14 +7,19 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from intermit.models.rigid_body import RigidBody
-from intermit.optim.bounds import polynomials as poly
-from intermit.optim.bounds.chart import chart_between
-from intermit.optim.bounds.fit import Fit
-from intermit.optim.bounds.gauge import invariant_set
-from intermit.optim.bounds.momentum_sets import UnitBall
-from intermit.optim.bounds.prove import BranchAndBound
-from intermit.optim.bounds.rate import exact_inverse, momentum_rate_polynomials
-from intermit.optim.bounds.separation import Target, cheap_separation, potential_program, separation
+from intermit.optim.bounds.potential.fit import Fit
+from intermit.optim.bounds.potential.prove import BranchAndBound
+from intermit.optim.bounds.potential.separation import (
+    Target,
+    cheap_separation,
+    potential_program,
+    separation,
+)
+from intermit.optim.bounds.sets import polynomials as poly
+from intermit.optim.bounds.sets.chart import chart_between
+from intermit.optim.bounds.sets.gauge import invariant_set
+from intermit.optim.bounds.sets.momentum_sets import UnitBall
+from intermit.optim.bounds.sets.rate import exact_inverse, momentum_rate_polynomials
 from intermit.optim.norms import LargestComponent
 from intermit.optim.problem import quaternion_from_axis_angle
 from problems import UNIT

@@ -14,11 +14,11 @@ from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import PiecewisePolynomial
 from intermit.optim.bounds import PathOptions, certified_lower_bound
 from intermit.optim.bounds.bound import path_of, start_momentum
-from intermit.optim.bounds.coast import coasts
-from intermit.optim.bounds.deviation import Growth, deviation_above, growth_of_deviations
-from intermit.optim.bounds.gauge import invariant_set, longest_vertex, torque_vertices
-from intermit.optim.bounds.momentum_sets import UnitBall
-from intermit.optim.bounds.travel import WindowTravel, least_peak
+from intermit.optim.bounds.sets.gauge import invariant_set, longest_vertex, torque_vertices
+from intermit.optim.bounds.sets.momentum_sets import UnitBall
+from intermit.optim.bounds.windows.coast import coasts
+from intermit.optim.bounds.windows.deviation import Growth, deviation_above, growth_of_deviations
+from intermit.optim.bounds.windows.travel import WindowTravel, least_peak
 from intermit.optim.norms import Euclidean, LargestComponent, ThrusterAxes
 from intermit.optim.problem import Terminal, TransferProblem
 from scipy.integrate import solve_ivp

@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import numpy as np
 from intermit.models.schedule import Hermite, PiecewisePolynomial, Window, build_schedule
-from intermit.optim.bounds.travel import WindowTravel, least_peak, momentum_peak, rounded_down
+from intermit.optim.bounds.windows.travel import WindowTravel, least_peak, momentum_peak, rounded_down
 from intermit.optim.problem import WindowProfile, window_profile
 from scipy.integrate import quad
 

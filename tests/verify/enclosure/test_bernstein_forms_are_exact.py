@@ -5,7 +5,7 @@ from itertools import pairwise, product
 
 import pytest
 from intermit.models.schedule import polynomial as poly
-from intermit.verify.enclosure.bernstein import Bernstein, lower_bound, split
+from intermit.verify.exact.bernstein import Bernstein, lower_bound, split
 
 P = poly.polynomial(F(1, 3), -2, 0, F(7, 5))
 Q = poly.polynomial(-1, F(1, 7), 4)

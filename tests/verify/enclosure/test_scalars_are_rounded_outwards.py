@@ -4,7 +4,7 @@ from fractions import Fraction as F
 
 import numpy as np
 import pytest
-from intermit.verify.enclosure.balls import (
+from intermit.verify.exact.balls import (
     enclose,
     fraction_above,
     fraction_below,
@@ -14,7 +14,7 @@ from intermit.verify.enclosure.balls import (
     sqrt_above,
     sqrt_below,
 )
-from intermit.verify.enclosure.bisection import minimum_below
+from intermit.verify.exact.bisection import minimum_below
 from problems import J1, J2
 
 VALUES = [F(2), F(1, 3), F(10**30 + 1), F(1, 7**20), F(9, 4)]

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from intermit.models.schedule import Hermite, Window, build_schedule
 from intermit.models.simulation import settling_time, simulate
-from intermit.verify.floor.certify import FloorOptions, certify_floor
-from intermit.verify.floor.comparison import BodyBounds
-from intermit.verify.floor.convergence import analyse_convergence
-from intermit.verify.floor.sets import InitialSet
-from intermit.verify.floor.sooner import settle_sooner
+from intermit.verify.filter.certify import FloorOptions, certify_floor
+from intermit.verify.filter.comparison import BodyBounds
+from intermit.verify.filter.convergence import analyse_convergence
+from intermit.verify.filter.refine import settle_sooner
+from intermit.verify.filter.sets import InitialSet
 from problems import ADAPTIVE, J1, PERSISTENCE, paper_schedule
 
 BOUNDS = BodyBounds.of(J1)

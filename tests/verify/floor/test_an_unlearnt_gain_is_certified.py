@@ -9,11 +9,11 @@ from intermit.models.ensemble import MetricOptions, simulate_ensemble
 from intermit.models.schedule import Hermite, Window, build_schedule
 from intermit.verify import checker
 from intermit.verify.certificates import certificate_text
-from intermit.verify.floor.certify import FloorOptions, certify_floor
-from intermit.verify.floor.comparison import BodyBounds
-from intermit.verify.floor.question import FloorQuestion
-from intermit.verify.floor.sets import InitialSet
-from intermit.verify.floor.study import answer
+from intermit.verify.filter.answer import answer
+from intermit.verify.filter.certify import FloorOptions, certify_floor
+from intermit.verify.filter.comparison import BodyBounds
+from intermit.verify.filter.question import FloorQuestion
+from intermit.verify.filter.sets import InitialSet
 from intermit.verify.verdict import Verdict
 from problems import ADAPTIVE, J1, TILTED, paper_schedule
 

@@ -8,11 +8,11 @@ import pytest
 from intermit.models.laws import QuaternionPD
 from intermit.models.schedule import Hermite, Window, build_schedule
 from intermit.models.simulation import filter_minimum, settling_time, simulate, torque_metrics
-from intermit.verify.floor.certify import FloorOptions
-from intermit.verify.floor.convergence import envelope
-from intermit.verify.floor.question import FloorQuestion
-from intermit.verify.floor.study import answer
-from intermit.verify.floor.worst_found import Search
+from intermit.verify.filter.answer import answer
+from intermit.verify.filter.certify import FloorOptions
+from intermit.verify.filter.convergence import envelope
+from intermit.verify.filter.question import FloorQuestion
+from intermit.verify.filter.worst_found import Search
 from intermit.verify.verdict import Verdict
 from problems import ADAPTIVE, J1, PERSISTENCE, REST, TILTED, paper_schedule
 

@@ -4,7 +4,7 @@ import casadi as ca
 import numpy as np
 import pytest
 from intermit.models.closed_loop import body_values, close_loop
-from intermit.verify.floor.comparison import BodyBounds, angle_factor_float
+from intermit.verify.filter.comparison import BodyBounds, angle_factor_float
 from problems import ADAPTIVE, DIAG123, J1, J2, PERSISTENCE, random_quaternion
 
 COUNT = 400

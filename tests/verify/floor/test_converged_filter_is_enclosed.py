@@ -5,8 +5,8 @@ from fractions import Fraction as F
 import numpy as np
 import pytest
 from intermit.models.schedule import Hermite, Window, build_schedule
-from intermit.verify.floor import converged
-from intermit.verify.floor.converged import ConvergedFilter, particular_solution
+from intermit.verify.filter import converged
+from intermit.verify.filter.converged import ConvergedFilter, particular_solution
 from problems import CONVERGED_FILTER_FLOOR, paper_schedule
 from scipy.integrate import solve_ivp
 

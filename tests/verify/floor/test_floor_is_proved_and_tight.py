@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from intermit.models.laws import QuaternionPD
 from intermit.models.schedule import Hermite, PiecewisePolynomial, Schedule, Window, build_schedule
-from intermit.verify.enclosure.stepping import Stepper, is_proved
-from intermit.verify.floor.certify import FloorOptions, certify_floor, comparison_system
-from intermit.verify.floor.comparison import BodyBounds
-from intermit.verify.floor.converged import ConvergedFilter
-from intermit.verify.floor.sets import InitialSet
+from intermit.verify.filter.certify import FloorOptions, certify_floor, comparison_system
+from intermit.verify.filter.comparison import BodyBounds
+from intermit.verify.filter.converged import ConvergedFilter
+from intermit.verify.filter.sets import InitialSet
+from intermit.verify.flow.stepping import Stepper, is_proved
 from problems import ADAPTIVE, CONVERGED_FILTER_FLOOR, J1, PERSISTENCE, paper_schedule
 from scipy.integrate import solve_ivp
 

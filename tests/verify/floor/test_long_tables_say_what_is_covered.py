@@ -4,10 +4,10 @@ from fractions import Fraction as F
 
 import pytest
 from intermit.models.schedule import Ramps, Window, build_schedule
-from intermit.verify.excitation import excitation_claim
-from intermit.verify.floor.question import FloorQuestion
-from intermit.verify.floor.study import LONGEST_TABLE, answer
-from intermit.verify.schedule_facts import schedule_claims
+from intermit.verify.filter.answer import LONGEST_TABLE, answer
+from intermit.verify.filter.question import FloorQuestion
+from intermit.verify.schedule.excitation import excitation_claim
+from intermit.verify.schedule.facts import schedule_claims
 from intermit.verify.verdict import Verdict
 from problems import J1, PERSISTENCE
 

@@ -6,8 +6,8 @@ import numpy as np
 from hostile_scenarios import shifted
 from intermit.models.laws import PersistenceFilter
 from intermit.models.schedule import Hermite, Window, build_schedule
-from intermit.verify.floor.sets import InitialSet
-from intermit.verify.floor.worst_found import Search, _Shape, find_worst
+from intermit.verify.filter.sets import InitialSet
+from intermit.verify.filter.worst_found import Search, _Shape, find_worst
 from problems import J1
 
 LAW = PersistenceFilter(lambda_=F(1), R0=F("0.2"))

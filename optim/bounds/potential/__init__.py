@@ -1,0 +1,1 @@
+"""Potentials: fitted, proved, and the least travel between attitudes that follows."""

@@ -1,0 +1,1 @@
+"""Convex programs with few unknowns and many constraints."""

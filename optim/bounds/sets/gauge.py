@@ -1,0 +1,208 @@
+r"""Sets of momenta that free motion leaves alone: what a torque set of any shape can reach.
+
+Let T be the set of torques of unit peak and K a convex set with K = -K that contains T and is
+mapped into itself by free motion H' = H x J^-1 H. The gauge of K is constant in free motion and
+grows (and shrinks) at most p w under torque in p w T. Since |H|^2 and H'J^-1 H are both
+conserved, every set {H'M_k H <= g_k^2} with M_k = a I + b J^-1 >= 0 will do, and the least g_k
+that lets T in is the largest t'M_k t over the vertices t of T, a convex function. The three rows
+
+    I,   J^-1 - c I,   C I - J^-1      (c <= 1/Jmax, C >= 1/Jmin, rational)
+
+give all the others. For J = c I it is the ball around T. Rows e_i e_i' <= beta_i^2 (no longer
+invariant) cut the set down where something else is known about the components.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from functools import cached_property
+from itertools import product
+from typing import final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....models.rigid_body import RigidBody
+from ...norms import Euclidean, LargestComponent, Norm, ThrusterAxes
+from ..program.constraints import CutConstraint, RateConstraint
+from .chart import Vector, square_root
+from .momentum_sets import (
+    IDENTITY,
+    MomentumSet,
+    Row,
+    TaylorBoxes,
+    greatest_inertia_above,
+    has_equal_inertias,
+    least_inertia_below,
+    length_above,
+    sharpened,
+)
+from .rate import ExactMatrix, exact_inverse
+from .support_table import SupportTable
+
+Array = NDArray[np.float64]
+
+_MOST_THRUSTERS = 12
+
+
+@final
+class GaugeSet(MomentumSet):
+    """{H : H'M_k H <= g_k^2 for every row k}, the first row being the identity.
+
+    Attributes
+    ----------
+    matrices : tuple of exact (3, 3)
+        M_k >= 0.
+    levels : tuple of Fraction
+        g_k^2 > 0.
+    """
+
+    def __init__(
+        self,
+        body: RigidBody,
+        matrices: tuple[ExactMatrix, ...],
+        levels: tuple[Fraction, ...],
+        speed: Fraction,
+    ) -> None:
+        self.body, self.matrices, self.levels = body, matrices, levels
+        self._speed = speed
+
+    @property
+    def rows(self) -> tuple[Row, ...]:
+        """The matrices with their levels."""
+        return tuple(zip(self.matrices, self.levels, strict=True))
+
+    @cached_property
+    def _float_rows(self) -> tuple[Array, Array]:
+        M = np.array([[[float(x) for x in row] for row in matrix] for matrix in self.matrices])
+        return M, np.array([float(g) for g in self.levels])
+
+    @cached_property
+    def table(self) -> SupportTable:
+        """Support function at the nodes of a triangulated octahedron."""
+        return SupportTable(*self._float_rows)
+
+    def support_above(self, v: Array) -> Array:
+        """Less of the piecewise linear interpolation and of the nearest node's ellipsoid."""
+        return self.table.above(v)
+
+    def support_over_boxes(self, boxes: TaylorBoxes, enough: float) -> Array:
+        """Bound by the nearest ellipsoid, or by components or corners where that is less."""
+        bound = boxes.by_square(self.table.ellipsoids(boxes.middle))
+        bound = sharpened(bound, boxes, enough, lambda part: part.by_components(self.widths()))
+        return sharpened(bound, boxes, enough, lambda part: part.by_corners(self))
+
+    @cached_property
+    def _widths(self) -> Array:
+        return self.table.above(np.eye(3)) * (1 + 1e-12)
+
+    def widths(self) -> Array:
+        """Support along the axes."""
+        return self._widths
+
+    def fastest_rate(self) -> Fraction:
+        """Bound from the invariant rows: J^-2 <= (c + C)(J^-1 - c I) + c^2 I."""
+        return self._speed
+
+    def straight_travel(self, axis: Array, angle: float) -> float:
+        """Gauge of J axis times angle."""
+        H = self.body.inertia @ axis / np.linalg.norm(axis)
+        M, g = self._float_rows
+        return float(np.sqrt((np.einsum("i,kij,j->k", H, M, H) / g).max()) * angle)
+
+    def _squares(self, momentum: Vector) -> list[Fraction]:
+        result = []
+        for M, g in zip(self.matrices, self.levels, strict=True):
+            form = sum((momentum[i] * M[i][j] * momentum[j] for i in range(3) for j in range(3)), Fraction(0))
+            result.append(form / g)
+        return result
+
+    def size_above(self, momentum: Vector) -> Fraction:
+        """Largest sqrt(H'M_k H)/g_k, rounded up."""
+        return max(square_root(x)[1] for x in self._squares(momentum)) if any(momentum) else Fraction(0)
+
+    def size_below(self, momentum: Vector) -> Fraction:
+        """Largest sqrt(H'M_k H)/g_k, rounded down."""
+        return max(square_root(x)[0] for x in self._squares(momentum))
+
+    def size_of_rate(self, rate: Fraction) -> Fraction:
+        """Bound through |J w| <= Jmax |w| and the trace of each row."""
+        if not rate:
+            return Fraction(0)
+        factors = [
+            square_root((M[0][0] + M[1][1] + M[2][2] if k else Fraction(1)) / g)[1]
+            for k, (M, g) in enumerate(zip(self.matrices, self.levels, strict=True))
+        ]
+        return greatest_inertia_above(self.body) * rate * max(factors)
+
+    def constraint(self) -> RateConstraint:
+        """Cuts by boundary points."""
+        return CutConstraint(self.table.boundary)
+
+    def key(self) -> tuple[object, ...]:
+        """Body and rows."""
+        return ("gauge", self.body.exact_inertia, self.matrices, self.levels)
+
+    def with_box(self, half_widths: Sequence[Fraction]) -> GaugeSet:
+        """Return the part with |H_i| <= half_widths[i]."""
+        matrices, levels = list(self.matrices), list(self.levels)
+        for i, width in enumerate(half_widths):
+            rows = [[Fraction(int(j == k == i)) for k in range(3)] for j in range(3)]
+            matrices.append(tuple((row[0], row[1], row[2]) for row in rows))
+            levels.append(Fraction(width) ** 2)
+        return GaugeSet(self.body, tuple(matrices), tuple(levels), self._speed)
+
+
+def torque_vertices(norm: Norm) -> list[Vector]:
+    """Points whose convex hull contains the torques of unit peak (and are among them)."""
+    if isinstance(norm, LargestComponent):
+        return [(Fraction(a), Fraction(b), Fraction(c)) for a, b, c in product((-1, 1), repeat=3)]
+    if isinstance(norm, ThrusterAxes):
+        if len(norm.axes) > _MOST_THRUSTERS:
+            raise ValueError(
+                f"lower bounds take at most {_MOST_THRUSTERS} thrusters, received {len(norm.axes)}"
+            )
+        sums: list[Vector] = []
+        for on in product((0, 1), repeat=len(norm.axes)):
+            parts = [axis for axis, used in zip(norm.axes, on, strict=True) if used]
+            x, y, z = (sum((axis[i] for axis in parts), Fraction(0)) for i in range(3))
+            sums.append((x, y, z))
+        return sums
+    raise TypeError(f"no vertices for the {norm.name} norm")
+
+
+def invariant_set(body: RigidBody, norm: Norm) -> GaugeSet:
+    """Build the invariant set of a torque arrangement other than the Euclidean ball."""
+    if isinstance(norm, Euclidean):
+        raise TypeError("the Euclidean norm has the ball for its invariant set")
+    vertices = torque_vertices(norm)
+    inverse = exact_inverse(body.exact_inertia)
+    low = 1 / greatest_inertia_above(body)
+    high = 1 / least_inertia_below(body)
+    rows = [IDENTITY]
+    if not has_equal_inertias(body):
+        rows += [_combination(inverse, Fraction(1), -low), _combination(inverse, Fraction(-1), high)]
+    levels = [_largest_form(row, vertices) for row in rows]
+    square = high**2 * levels[0]
+    if len(rows) > 1:
+        square = min(square, (low + high) * levels[1] + low**2 * levels[0])
+    return GaugeSet(body, tuple(rows), tuple(levels), square_root(square)[1])
+
+
+def _combination(inverse: ExactMatrix, factor: Fraction, shift: Fraction) -> ExactMatrix:
+    """Return factor * inverse + shift * I."""
+    rows = [[factor * inverse[i][j] + (shift if i == j else 0) for j in range(3)] for i in range(3)]
+    return tuple((row[0], row[1], row[2]) for row in rows)
+
+
+def _largest_form(M: ExactMatrix, vertices: Sequence[Vector]) -> Fraction:
+    """Largest t'M t over the vertices."""
+    return max(
+        sum((t[i] * M[i][j] * t[j] for i in range(3) for j in range(3)), Fraction(0)) for t in vertices
+    )
+
+
+def longest_vertex(norm: Norm) -> Fraction:
+    """Upper bound of the length of a torque of unit peak."""
+    return max(length_above(t) for t in torque_vertices(norm))

@@ -1,0 +1,1 @@
+"""What torque through the windows can do: travel, coasts, deviations, components."""

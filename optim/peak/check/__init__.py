@@ -1,0 +1,1 @@
+"""Checks of an answer, recomputed outside every solver."""

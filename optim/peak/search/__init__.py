@@ -1,0 +1,1 @@
+"""Searches over starts and meshes: least peak, least impulse, least time."""

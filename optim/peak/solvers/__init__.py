@@ -1,0 +1,1 @@
+"""Two solvers of one mesh: sequential convex programming and direct collocation."""

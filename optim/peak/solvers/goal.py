@@ -1,0 +1,165 @@
+"""What a transfer is asked to make least: the peak of its torque, or its impulse within a limit.
+
+Both are convex in the control, so that both have the same kind of optimality gap (a dual value)
+and the same kind of switching function; they differ in what a control is worth against it. All
+numbers are in solver units; values are in the unit of a control.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...norms import Euclidean, LargestComponent, Norm
+from .optimality import control_support, dual_value, linearised_offset
+
+if TYPE_CHECKING:
+    from ..transcription.shooting import Flight, Sensitivity, Shooting
+
+Array = NDArray[np.float64]
+
+
+class Goal(ABC):
+    """A convex function of the control to be made least, and the limit on the control's effort."""
+
+    @abstractmethod
+    def value(self, shooting: Shooting, control: Array) -> float:
+        """What is made least, homogeneous of degree one in the control (n, m)."""
+
+    @abstractmethod
+    def dual(
+        self, shooting: Shooting, flight: Flight, sensitivity: Sensitivity, multiplier: Array
+    ) -> tuple[float, Array]:
+        """Lower bound of the linearised problem from a multiplier of the residual, and the multiplier."""
+
+    @abstractmethod
+    def level(self, value: float) -> float:
+        """Effort of a control that pushes as hard as it may, at an optimum of this value."""
+
+    @abstractmethod
+    def worth(self, norm: Norm, pull: Array, flow: Array) -> Array:
+        """The most that a control gains against a pull (..., m) when its impulse costs `flow` (...)."""
+
+    @abstractmethod
+    def gain(self, norm: Norm, pull: Array, flow: Array, control: Array, value: float) -> Array:
+        """What a control (..., m) of this value gains against the pull, in the same measure."""
+
+    @abstractmethod
+    def unit(self, value: float) -> float:
+        """What a `worth` is divided by to be a fraction of the value."""
+
+    @abstractmethod
+    def share(self, norm: Norm, control: Array, value: float) -> Array | None:
+        """How far each switch is thrown, 0 to 1, (..., m) -> (..., j); None without switches."""
+
+    @abstractmethod
+    def throw(self, norm: Norm, pull: Array) -> Array:
+        """Rise of the pull, (..., m) -> (..., j): through a threshold where a switch is thrown."""
+
+
+@final
+@dataclass(frozen=True)
+class LeastPeak(Goal):
+    """The least p with effort(v_k) <= p."""
+
+    def value(self, shooting: Shooting, control: Array) -> float:
+        """Largest effort."""
+        return float(shooting.scaled.problem.norm.effort(control).max())
+
+    def dual(
+        self, shooting: Shooting, flight: Flight, sensitivity: Sensitivity, multiplier: Array
+    ) -> tuple[float, Array]:
+        """Dual value, the multiplier normalised so that the whole pull is worth one."""
+        return dual_value(shooting, flight, sensitivity, multiplier)
+
+    def level(self, value: float) -> float:
+        """The peak itself."""
+        return value
+
+    def worth(self, norm: Norm, pull: Array, flow: Array) -> Array:
+        """Support of the pull: what unit effort does."""
+        del flow
+        return control_support(norm, pull)
+
+    def gain(self, norm: Norm, pull: Array, flow: Array, control: Array, value: float) -> Array:
+        """Pull . control for each unit of the peak."""
+        del norm, flow
+        return np.asarray((pull * control).sum(axis=-1)) / value
+
+    def unit(self, value: float) -> float:
+        """One: the multiplier's normalisation makes it a fraction already."""
+        del value
+        return 1.0
+
+    def share(self, norm: Norm, control: Array, value: float) -> Array | None:
+        """From one limit to the other; a ball has no switches, its direction turns."""
+        if isinstance(norm, Euclidean):
+            return None
+        low = -1.0 if isinstance(norm, LargestComponent) else 0.0
+        return np.asarray((control / value - low) / (1.0 - low))
+
+    def throw(self, norm: Norm, pull: Array) -> Array:
+        """The pull on each component."""
+        del norm
+        return pull
+
+
+@final
+@dataclass(frozen=True)
+class LeastImpulse(Goal):
+    """The least integral of w consumption(v) with effort(v_k) <= limit, as a mean over the window time.
+
+    Attributes
+    ----------
+    limit : float
+        Solver units of control.
+    """
+
+    limit: float
+
+    def value(self, shooting: Shooting, control: Array) -> float:
+        """Mean consumption over the window time."""
+        return float(shooting.weights @ shooting.scaled.problem.norm.consumption(control))
+
+    def dual(
+        self, shooting: Shooting, flight: Flight, sensitivity: Sensitivity, multiplier: Array
+    ) -> tuple[float, Array]:
+        """Minimum of the Lagrangian over all controls within the limit."""
+        norm = shooting.scaled.problem.norm
+        pull = -np.einsum("i,ikm->km", multiplier, sensitivity.terminal)
+        offset = linearised_offset(shooting, flight, sensitivity, multiplier)
+        return offset - float(self.worth(norm, pull, shooting.weights).sum()), multiplier
+
+    def level(self, value: float) -> float:
+        """The limit."""
+        del value
+        return self.limit
+
+    def worth(self, norm: Norm, pull: Array, flow: Array) -> Array:
+        """Limit times what the pull exceeds the cost of the impulse by."""
+        over = self.throw(norm, pull) - flow[..., None]
+        return np.asarray(self.limit * np.maximum(over, 0.0).sum(axis=-1))
+
+    def gain(self, norm: Norm, pull: Array, flow: Array, control: Array, value: float) -> Array:
+        """Pull . control less the cost of its impulse."""
+        del value
+        return np.asarray((pull * control).sum(axis=-1) - flow * norm.consumption(control))
+
+    def unit(self, value: float) -> float:
+        """The value."""
+        return max(value, 1e-300)
+
+    def share(self, norm: Norm, control: Array, value: float) -> Array | None:
+        """From off to the limit."""
+        del value
+        return self.throw(norm, control) / self.limit
+
+    def throw(self, norm: Norm, pull: Array) -> Array:
+        """Length, size of each component, or each thruster's own."""
+        if isinstance(norm, Euclidean):
+            return np.asarray(np.linalg.norm(pull, axis=-1)[..., None])
+        return np.abs(pull) if isinstance(norm, LargestComponent) else np.asarray(pull)

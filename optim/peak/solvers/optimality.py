@@ -1,0 +1,54 @@
+"""Optimality as one number: the duality gap of the problem linearised about the answer.
+
+For any multiplier y of the terminal residual r (with derivative G), normalised so that
+sum_k support(-G_k' y) = 1, the linearised problem cannot do better than
+
+    dual(y) = y . (r - G v) - tolerance . |y|.
+
+(peak - dual) / peak is therefore >= 0 at a feasible control, and zero exactly when the
+conditions of Karush, Kuhn and Tucker hold: stationarity and complementarity in one residual,
+computed from the answer alone, outside any solver.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...norms import Euclidean, LargestComponent, Norm
+from ..transcription.shooting import Flight, Sensitivity, Shooting
+
+Array = NDArray[np.float64]
+
+
+def control_support(norm: Norm, direction: Array) -> Array:
+    """Largest direction . v over controls of unit effort, (..., m) -> (...)."""
+    if isinstance(norm, Euclidean):
+        return np.asarray(np.linalg.norm(direction, axis=-1))
+    if isinstance(norm, LargestComponent):
+        return np.asarray(np.abs(direction).sum(axis=-1))
+    return np.asarray(np.maximum(direction, 0.0).sum(axis=-1))
+
+
+def dual_value(
+    shooting: Shooting, flight: Flight, sensitivity: Sensitivity, multiplier: Array
+) -> tuple[float, Array]:
+    """Lower bound of the linearised problem from a multiplier, and that multiplier normalised."""
+    norm = shooting.scaled.problem.norm
+    pull = -np.einsum("i,ikm->km", multiplier, sensitivity.terminal)
+    total = float(control_support(norm, pull).sum())
+    if total <= 0.0:
+        return 0.0, np.zeros(6)
+    y = multiplier / total
+    return linearised_offset(shooting, flight, sensitivity, y), y
+
+
+def linearised_offset(
+    shooting: Shooting, flight: Flight, sensitivity: Sensitivity, multiplier: Array
+) -> float:
+    """Return y . (r - G v) - tolerance . |y|: what a multiplier makes of the terminal rows alone."""
+    offset = flight.residual - np.einsum("ikm,km->i", sensitivity.terminal, flight.control)
+    value = float(multiplier @ offset)
+    for block, tolerance in enumerate(shooting.tolerances):
+        value -= tolerance * float(np.linalg.norm(multiplier[3 * block : 3 * block + 3]))
+    return value

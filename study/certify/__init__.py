@@ -1,0 +1,1 @@
+"""Certificate files of a scenario's claims."""

@@ -1,0 +1,222 @@
+"""The claims about one law of a scenario."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import partial
+from typing import final
+
+from ...models.closed_loop import close_loop
+from ...models.laws import Law
+from ...scenario import LawChoice, Scenario
+from ...verify.filter.answer import FloorAnswer, answer
+from ...verify.filter.claims import torque_quantities
+from ...verify.filter.recognise import follows_filter
+from ...verify.filter.torque_excess import refuted_limit
+from ...verify.lyapunov.claims import lyapunov_claims
+from ...verify.sampling import SampledDerivative, with_samples
+from ...verify.schedule.filter_start import filter_start_claim
+from ...verify.verdict import Claim, Quantity, Verdict
+from ..claims.keys import CLAIM_KEYS, order_of
+from ..simulated_run import Run, Seen
+from .curves import CertifiedCurves, certified_curves
+from .filter_question import floor_question, is_certified
+from .margins import convergence_margins, with_margins
+from .sampled import reference_floor, sample_law
+from .why_floor import floor_note
+
+Progress = Callable[[str, float], None]
+
+
+@final
+@dataclass(frozen=True, kw_only=True)
+class CaseOptions:
+    """How much is asked about one law.
+
+    Attributes
+    ----------
+    margins : look for how far schedule and lambda may change
+    search : look for the worst start by simulation
+    """
+
+    margins: bool = True
+    search: bool = True
+
+
+@final
+@dataclass(frozen=True)
+class Findings:
+    """What was found about one law beside its run; it can be sent between processes.
+
+    Attributes
+    ----------
+    claims : in the order of the claim keys
+    reference_floor : R_min in V's k* = 1/R_min, s; None where none is known
+    curves : certified bounds over the scenario's horizon; None where nothing reaches that far
+    samples : sampled derivative of V; None where the law has no storage function
+    notes : what a reader should know beside the claims
+    """
+
+    claims: tuple[Claim, ...]
+    reference_floor: Fraction | None
+    curves: CertifiedCurves | None
+    samples: SampledDerivative | None
+    notes: tuple[str, ...] = ()
+
+
+@final
+@dataclass(frozen=True)
+class Case:
+    """One law of the scenario, checked and run.
+
+    Attributes
+    ----------
+    claims : the findings' claims, marked as counted or not
+    run : from the scenario's initial state; None if no simulation was asked for
+    """
+
+    choice: LawChoice
+    findings: Findings
+    claims: tuple[Claim, ...]
+    run: Run | None
+
+
+@final
+@dataclass(frozen=True)
+class Decided:
+    """What exact means decide about one law, and what the parts that follow need of it.
+
+    Attributes
+    ----------
+    claims : without margins and samples
+    has_margins : whether convergence is proved, so that its margins may be looked for
+    """
+
+    claims: tuple[Claim, ...]
+    reference_floor: Fraction | None
+    curves: CertifiedCurves | None
+    note: str
+    has_margins: bool
+
+
+Sampled = tuple[SampledDerivative | None, str]
+"""Samples of V', or the reason why there are none."""
+
+
+def decide(
+    scenario: Scenario, choice: LawChoice, seen: Seen, options: CaseOptions, progress: Progress | None = None
+) -> Decided:
+    """Decide every claim about one law; `seen` is what its run showed. Margins and samples come after it."""
+    tell = progress if progress is not None else _silent
+    law = choice.build()
+    tell("V' as a polynomial", 0.0)
+    claims = {claim.key: claim for claim in _algebraic_claims(scenario, law)}
+    tell("floor of R", 0.2)
+    question = floor_question(scenario, law, seen, search=options.search)
+    found = answer(question)
+    claims |= {claim.key: claim for claim in found.claims}
+    if "R" not in (state.name for state in law.controller_states):
+        del claims["filter.floor"]
+    _add_torque(claims, found)
+    limit = claims.get("torque.limit")
+    if limit is not None and limit.verdict is Verdict.UNDECIDED and seen.excess_at is not None:
+        tell("the run beyond the torque limit", 0.5)
+        start = scenario.initial
+        claims[limit.key] = refuted_limit(
+            limit, question, quaternion=start.attitude, rate=start.exact_rate, at=seen.excess_at
+        )
+    return Decided(
+        tuple(claims.values()),
+        reference_floor(scenario, law, claims.get("filter.floor"), seen),
+        certified_curves(found.floor, float(scenario.horizon)) if found.floor is not None else None,
+        floor_note(scenario.schedule, found.converged),
+        options.margins and claims["convergence"].verdict is Verdict.PROVED,
+    )
+
+
+def margins(scenario: Scenario, choice: LawChoice) -> tuple[Quantity, ...]:
+    """How far schedule and lambda may change while convergence stays certified."""
+    question = floor_question(scenario, choice.build(), Seen(), search=False)
+    return tuple(convergence_margins(scenario, choice, partial(is_certified, question)))
+
+
+def samples(
+    scenario: Scenario, choice: LawChoice, floor: Fraction | None, progress: Callable[[float], None]
+) -> Sampled:
+    """Samples of V' with k* = 1/floor."""
+    return sample_law(scenario, choice.build(), floor, progress)
+
+
+def findings(decided: Decided, margins: tuple[Quantity, ...], sampled: Sampled) -> Findings:
+    """Put margins and samples under the claims they belong to."""
+    claims = {claim.key: claim for claim in decided.claims}
+    if margins:
+        claims["convergence"] = with_margins(claims["convergence"], margins)
+    found, why_not = sampled
+    if found is not None:
+        _add_samples(claims, found)
+    ordered = tuple(sorted(claims.values(), key=lambda claim: order_of(claim.key)))
+    told = (decided.note, f"V' was not sampled: {why_not}" if why_not else "")
+    notes = tuple(note for note in told if note)
+    return Findings(ordered, decided.reference_floor, decided.curves, found, notes)
+
+
+def decided_claims(scenario: Scenario, law: Law) -> tuple[Claim, ...]:
+    """Claims about one law that exact means decide, with their certificates; no samples, no simulation."""
+    found = answer(floor_question(scenario, law, Seen(), search=False))
+    return (*_algebraic_claims(scenario, law), *found.claims)
+
+
+def _algebraic_claims(scenario: Scenario, law: Law) -> Iterator[Claim]:
+    """Claims about R(0), and about the law's storage function over the inertia's whole tolerance."""
+    yield from _filter_claims(scenario, law)
+    yield from lyapunov_claims(
+        law, scenario.body, tolerance=scenario.inertia_tolerance, schedule=scenario.schedule
+    )
+
+
+def _add_torque(claims: dict[str, Claim], found: FloorAnswer) -> None:
+    """Without a limit to hold it against, the certified torque bound stands with the convergence."""
+    floor = claims.get("filter.floor")
+    covered = floor is not None and floor.verdict is Verdict.PROVED
+    if covered and found.torque is not None and "torque.limit" not in claims:
+        convergence = claims["convergence"]
+        quantities = (*convergence.quantities, *torque_quantities(found.torque))
+        claims["convergence"] = replace(convergence, quantities=quantities)
+
+
+def _silent(stage: str, fraction: float) -> None:
+    del stage, fraction
+
+
+def _filter_claims(scenario: Scenario, law: Law) -> Iterator[Claim]:
+    """Claims about the filter state, for a law whose state R is the persistence filter's."""
+    start = next((state.initial for state in law.controller_states if state.name == "R"), Fraction(0))
+    decay = law.parameters.get("lambda", Fraction(0))
+    if start > 0 and decay > 0 and follows_filter(close_loop(law)):
+        yield filter_start_claim(scenario.schedule, decay=decay, initial=start)
+
+
+def _add_samples(claims: dict[str, Claim], samples: SampledDerivative) -> None:
+    """Put the samples under the two claims about V'."""
+    sign = claims.get("lyapunov.derivative", _open("lyapunov.derivative"))
+    claims[sign.key] = with_samples(sign, samples.sign, samples.sign_witness)
+    if samples.identity is not None:
+        identity = claims.get("lyapunov.identity", _open("lyapunov.identity"))
+        claims[identity.key] = with_samples(identity, samples.identity, samples.identity_witness)
+
+
+def _open(key: str) -> Claim:
+    """A claim that has samples under it and no proof."""
+    entry = CLAIM_KEYS[key]
+    return Claim(
+        key=key,
+        title=entry.title,
+        statement=entry.says,
+        verdict=Verdict.UNDECIDED,
+        reason="samples are no proof",
+        next_step="give the law a storage function that is polynomial in the state (Law.storage)",
+        source=entry.source,
+    )

@@ -1,0 +1,45 @@
+"""The question about R_min, convergence and torque that a scenario asks of one of its laws."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ...models.laws import Law
+from ...models.schedule import Schedule
+from ...scenario import Scenario
+from ...verify.filter.certify import FloorOptions, certify_floor
+from ...verify.filter.claims import reaches_far_enough
+from ...verify.filter.question import FloorQuestion
+from ...verify.filter.worst_found import Search
+from ..simulated_run import Seen
+
+COARSE = FloorOptions(max_bins=1, max_periods=8)
+"""A certificate that is cheap enough to be tried many times; one that it misses may still exist."""
+
+
+def floor_question(scenario: Scenario, law: Law, seen: Seen, *, search: bool) -> FloorQuestion:
+    """Put a scenario's question about one law; what the run showed stands beside the answer."""
+    bounds, limits = scenario.initial_set, scenario.limits
+    return FloorQuestion(
+        law=law,
+        body=scenario.body,
+        schedule=scenario.schedule,
+        inertia_tolerance=scenario.inertia_tolerance,
+        max_angle_deg=bounds.max_angle_deg,
+        max_rate=bounds.max_rate,
+        max_weighted_rate=bounds.max_weighted_rate,
+        attitude=scenario.tolerance.attitude,
+        rate=scenario.tolerance.rate,
+        torque_limit=None if limits is None else limits.torque,
+        torque_norm="component" if limits is None else limits.norm,
+        run_floor=None if seen.floor is None else (seen.floor, float(scenario.horizon)),
+        run_peak=seen.peak,
+        search=Search(samples=64, rounds=2, local=24, seed=scenario.check.seed) if search else None,
+    )
+
+
+def is_certified(question: FloorQuestion, law: Law, schedule: Schedule) -> bool:
+    """Whether convergence is certified, coarsely, with another law or schedule in the same question."""
+    other = replace(question, law=law, schedule=schedule)
+    floor = certify_floor(law, other.bounds, schedule, other.initial, options=COARSE)
+    return floor is not None and reaches_far_enough(floor) and floor.value > 0

@@ -1,0 +1,255 @@
+"""What a check found, as the sections and arrays of a record."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...models.schedule import Schedule
+from ...reports import parts
+from ...reports.provenance import provenance
+from ...reports.record import Record
+from ...scenario import LawChoice, Scenario
+from ...verify.sampling import SampledDerivative
+from ..claims.entries import claim_entries, quantity_entry, witness_entry
+from ..simulated_run import output_times, run_entry
+from .case import Case
+from .run import CheckStudy
+from .storage_history import storage_history
+
+Array = NDArray[np.float64]
+SHOWN_WINDOWS = 2000
+"""Windows that a record lists; of a longer table the first ones, with a note."""
+UNITS = {"lambda": "1/s", "gamma": "1/(kg m^2 s)", "R0": "s", "k0": "1/s", "a": "kg m^2/s^2"} | {
+    "proportional": "N m",
+    "derivative": "N m s",
+}
+
+
+def check_record(study: CheckStudy, *, date: str = "", author: str = "", command: str = "") -> Record:
+    """The record of one check, with its scenario's text and everything that decides a number."""
+    sections, arrays = check_sections(study)
+    return Record.create(
+        title=f"Check of {study.scenario.name}",
+        provenance=check_provenance(study, date=date, author=author, command=command),
+        sections=sections,
+        arrays=arrays,
+        outcome={"exit_code": study.exit_code, "sentence": study.sentence},
+    )
+
+
+def check_provenance(
+    study: CheckStudy, *, date: str = "", author: str = "", command: str = ""
+) -> dict[str, Any]:
+    """Scenario, versions, seeds, options and counted effort."""
+    scenario = study.scenario
+    effort = [
+        {"label": f"right-hand sides, {case.choice.label}", "count": int(case.run.trajectory.evaluations)}
+        for case in study.cases
+        if case.run is not None and case.run.trajectory is not None
+    ]
+    effort += [
+        {
+            "label": f"gradient evaluations, {case.choice.label}",
+            "count": case.findings.samples.samples.search_evaluations,
+        }
+        for case in study.cases
+        if case.findings.samples is not None
+    ]
+    found = provenance(
+        scenario_name=scenario.name,
+        scenario_text=scenario.path.read_text(encoding="utf-8-sig"),
+        date=date,
+        author=author,
+        command=command or f"intermit check {scenario.path.name}",
+        seeds={"derivative samples": scenario.check.seed},
+        options={"samples": scenario.check.samples, "claims": list(scenario.check.claims or ())},
+        effort=effort,
+    )
+    return found | {"input_sha256": scenario.sha256}
+
+
+def check_sections(study: CheckStudy) -> tuple[dict[str, Any], dict[str, Array]]:
+    """Sections `scenario`, `schedule`, `cases` and `samples`, and the arrays they name."""
+    arrays: dict[str, Array] = {}
+    cases, samples = [], []
+    for number, case in enumerate(study.cases, start=1):
+        entry, held = case_entry(study.scenario, case, f"law{number}")
+        cases.append(entry)
+        arrays |= held
+        if case.findings.samples is not None:
+            entry, held = samples_entry(case.findings.samples, case.choice.label, f"law{number}")
+            samples.append(entry)
+            arrays |= held
+    schedule, held = schedule_entry(study)
+    sections: dict[str, Any] = {
+        "scenario": scenario_entry(study.scenario),
+        "schedule": schedule,
+        "cases": cases,
+        "samples": samples,
+    }
+    return sections, arrays | held
+
+
+def scenario_entry(scenario: Scenario) -> dict[str, Any]:
+    """What was asked, in facts."""
+    state, bounds = scenario.initial, scenario.initial_set
+    tolerance = scenario.tolerance
+    facts = [
+        {"label": "inertia", "matrix": scenario.body.inertia.tolist(), "unit": "kg m^2"},
+        _fact("initial error angle", parts.quantity("angle", float(f"{state.angle_deg:.10g}"), unit="deg")),
+        _fact("initial rate", text=f"({', '.join(f'{float(x):g}' for x in state.exact_rate)}) rad/s"),
+        _fact("largest error angle of the set", _exact("max_angle", bounds.max_angle_deg, "deg")),
+    ]
+    if bounds.max_rate is not None:
+        facts.append(_fact("largest rate of the set", _exact("max_rate", bounds.max_rate, "rad/s")))
+    if bounds.max_weighted_rate is not None:
+        quantity = _exact("max_weighted_rate", bounds.max_weighted_rate, "kg^1/2 m/s")
+        facts.append(_fact("largest sqrt(Omega' J Omega) of the set", quantity))
+    settled = f"|bv| <= {float(tolerance.attitude):g} and |w| <= {float(tolerance.rate):g} rad/s, for good"
+    facts.append(_fact("settled means", text=settled))
+    facts.append(_fact("runs end at", _exact("horizon", scenario.horizon, "s")))
+    if scenario.limits is not None:
+        quantity = _exact("torque_limit", scenario.limits.torque, "N m")
+        facts.append(_fact(f"torque limit ({scenario.limits.norm})", quantity))
+    if scenario.spacecraft_name:
+        facts.insert(0, _fact("spacecraft", text=scenario.spacecraft_name))
+    return {
+        "name": scenario.name,
+        "description": scenario.description,
+        "facts": facts,
+        "inertia": scenario.body.inertia.tolist(),
+        "horizon": float(scenario.horizon),
+        "tolerances": {
+            "attitude": float(scenario.tolerance.attitude),
+            "rate": float(scenario.tolerance.rate),
+        },
+        "notes": list(scenario.warnings),
+    }
+
+
+def schedule_entry(study: CheckStudy) -> tuple[dict[str, Any], dict[str, Array]]:
+    """Windows over the horizon, g on a fine grid of it, and the claims about the schedule."""
+    scenario, schedule = study.scenario, study.scenario.schedule
+    windows = list(schedule.windows_between(Fraction(0), scenario.horizon))
+    times = gain_times(schedule, scenario.horizon)
+    arrays = {
+        "schedule.time": times,
+        "schedule.gain": schedule.gain(times),
+        "schedule.gain_rate": schedule.gain_rate(times),
+    }
+    notes = [f"Source: {scenario.schedule_choice.source}."]
+    if len(windows) > SHOWN_WINDOWS:
+        notes.append(f"The first {SHOWN_WINDOWS} of {len(windows)} windows are listed.")
+    entry = {
+        "extends": "periodic" if schedule.is_periodic else "finite",
+        "windows": [[float(w.on), float(w.off)] for w in windows[:SHOWN_WINDOWS]],
+        "arrays": {name.removeprefix("schedule."): name for name in arrays},
+        "claims": claim_entries(study.claims, recheck=f"intermit check {scenario.path.name}"),
+        "notes": notes,
+    }
+    return entry, arrays
+
+
+def gain_times(schedule: Schedule, horizon: Fraction, per_piece: int = 24) -> Array:
+    """Knots up to the horizon, and points between them where g is not constant, s."""
+    times: list[float] = [0.0]
+    for count, piece in enumerate(schedule.pieces_between(Fraction(0), horizon)):
+        if count > 20 * SHOWN_WINDOWS:
+            break
+        start, end = float(piece.start), min(float(piece.end), float(horizon))
+        points = per_piece if len(piece.shape) > 1 else 1
+        times.extend((start + (end - start) * np.arange(1, points + 1) / points).tolist())
+    return np.unique(np.clip(times, 0.0, float(horizon)))
+
+
+def case_entry(scenario: Scenario, case: Case, key: str) -> tuple[dict[str, Any], dict[str, Array]]:
+    """One law: parameters, claims and its run."""
+    runs: list[dict[str, Any]] = []
+    arrays: dict[str, Array] = {}
+    notes = list(case.findings.notes)
+    if case.run is not None and case.run.trajectory is not None:
+        derivative = next((claim for claim in case.claims if claim.key == "lyapunov.derivative"), None)
+        history = storage_history(
+            case.run.trajectory, output_times(scenario), case.findings.reference_floor, derivative
+        )
+        entry, arrays = run_entry(scenario, case.run, f"{key}.run", case.choice.label, history)
+        runs.append(entry)
+    elif case.run is not None:
+        notes.append(case.run.failure)
+    certificates = []
+    curves = case.findings.curves
+    if curves is not None:
+        name = f"{key}.certified"
+        arrays |= curves.arrays(name)
+        floor = next(claim for claim in case.claims if claim.key == "filter.floor")
+        certificates.append(
+            {
+                "key": name,
+                "label": f"certified bounds, {case.choice.label}",
+                "claim": floor.statement,
+                "quantities": [quantity_entry(q) for q in floor.quantities],
+                "arrays": curves.roles(name),
+                "recheck": f"intermit check {scenario.path.name}",
+                "notes": ["Each value holds from its time to the next."],
+            }
+        )
+    return {
+        "key": key,
+        "label": case.choice.label,
+        "law": case.choice.type,
+        "parameters": parameter_entries(case.choice),
+        "claims": claim_entries(case.claims, recheck=f"intermit check {scenario.path.name}"),
+        "runs": runs,
+        "certificates": certificates,
+        "notes": notes,
+    }, arrays
+
+
+def parameter_entries(choice: LawChoice) -> list[dict[str, Any]]:
+    """Parameters of a law as exact quantities."""
+    return [_exact(name, value, UNITS.get(name, "")) for name, value in choice.parameters]
+
+
+def samples_entry(
+    sampled: SampledDerivative, label: str, case: str
+) -> tuple[dict[str, Any], dict[str, Array]]:
+    """The sampled derivative of V: its count, domain, worst state and histogram."""
+    samples = sampled.samples
+    key = f"{case}.samples"
+    arrays = {f"{key}.edges": samples.edges, f"{key}.counts": samples.counts}
+    entry: dict[str, Any] = {
+        "key": key,
+        "label": f"-V'/W, {label}",
+        "case": case,
+        "count": samples.sampling.count,
+        "seed": samples.sampling.seed,
+        "coverage": samples.domain.describe(),
+        "statement": sampled.sign.summary,
+        "histogram": {
+            "edges": f"{key}.edges",
+            "counts": f"{key}.counts",
+            "label": "-V'/W (the end bins hold what lies beyond)",
+            "unit": "1/s",
+        },
+        "margins": [
+            parts.figure_of(
+                "least_sampled", samples.sampled_worst, digits=4, unit="1/s", label="least -V'/W sampled"
+            )
+        ],
+    }
+    if sampled.sign_witness is not None:
+        entry["worst"] = witness_entry(sampled.sign_witness)
+    return entry, arrays
+
+
+def _exact(name: str, value: Fraction, unit: str) -> dict[str, Any]:
+    return parts.quantity(name, float(value), unit=unit)
+
+
+def _fact(label: str, quantity: Mapping[str, Any] | None = None, *, text: str = "") -> dict[str, Any]:
+    return {"label": label} | ({"quantity": dict(quantity)} if quantity is not None else {"text": text})

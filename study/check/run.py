@@ -1,0 +1,115 @@
+"""The main job: a scenario in, every claim about it out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import final
+
+from ...scenario import Scenario
+from ...verify.linear.stability import stability_claim
+from ...verify.schedule.excitation import excitation_claim
+from ...verify.schedule.facts import schedule_claims
+from ...verify.verdict import Claim
+from ..claims.counting import count, counted_keys, exit_code, sentence
+from ..simulated_run import run_law, seen_in
+from .case import Case, CaseOptions
+from .workers import crew
+
+Progress = Callable[[str, float], None]
+
+
+@final
+@dataclass(frozen=True, kw_only=True)
+class CheckOptions:
+    """What a check does beyond its claims.
+
+    Attributes
+    ----------
+    simulate : run every law from the initial state
+    margins : look for how far schedule and lambda may change before convergence is no longer certified
+    search : look for the worst start by simulation
+    workers : processes; more than 1 only from a program that guards its main module
+        (`if __name__ == "__main__"`). The result does not depend on it.
+    """
+
+    simulate: bool = True
+    margins: bool = True
+    search: bool = True
+    workers: int = 1
+
+
+@final
+@dataclass(frozen=True)
+class CheckStudy:
+    """Everything a check found.
+
+    Attributes
+    ----------
+    claims : about the schedule, whatever the law
+    cases : one for each law, in the scenario's order
+    """
+
+    scenario: Scenario
+    claims: tuple[Claim, ...]
+    cases: tuple[Case, ...]
+
+    @property
+    def all_claims(self) -> tuple[Claim, ...]:
+        """Claims about the schedule, then those about each law."""
+        return self.claims + tuple(claim for case in self.cases for claim in case.claims)
+
+    @property
+    def exit_code(self) -> int:
+        """0, 1 or 3 by the counted claims."""
+        return exit_code(self.all_claims)
+
+    @property
+    def sentence(self) -> str:
+        """The outcome in one sentence."""
+        return sentence(self.all_claims)
+
+
+def run_check(
+    scenario: Scenario, options: CheckOptions | None = None, progress: Progress | None = None
+) -> CheckStudy:
+    """Check a scenario: its schedule, then each of its laws, and simulate each law.
+
+    Raises
+    ------
+    ScenarioError
+        If the scenario asks for a claim that does not exist, or a law cannot be built.
+    """
+    options = options if options is not None else CheckOptions()
+    tell = progress if progress is not None else _silent
+    counted_keys(scenario)
+    tell("schedule", 0.0)
+    schedule = count(scenario_claims(scenario), scenario)
+    wanted = CaseOptions(margins=options.margins, search=options.search)
+    runs = []
+    with crew(len(scenario.laws), options.workers, tell) as workers:
+        for choice in scenario.laws:
+            tell(f"{choice.label}: simulation", 0.05)
+            run = run_law(scenario, choice.build()) if options.simulate else None
+            runs.append(run)
+            workers.add(scenario, choice, seen_in(scenario, run), wanted)
+        findings = workers.findings()
+    cases = (
+        Case(choice, found, count(found.claims, scenario), run)
+        for choice, found, run in zip(scenario.laws, findings, runs, strict=True)
+    )
+    study = CheckStudy(scenario, schedule, tuple(cases))
+    tell("done", 1.0)
+    return study
+
+
+def scenario_claims(scenario: Scenario) -> tuple[Claim, ...]:
+    """Claims about the schedule, whatever the law; and about the linear plant through it, if one is given."""
+    choice = scenario.schedule_choice
+    facts = schedule_claims(choice.schedule, overruns_as_printed=choice.overruns_as_printed)
+    plant = () if scenario.linear is None else (stability_claim(scenario.linear),)
+    return (*facts, excitation_claim(choice.schedule, scenario.check.pe_window), *plant)
+
+
+def _silent(stage: str, fraction: float) -> None:
+    del stage, fraction

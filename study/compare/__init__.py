@@ -1,0 +1,1 @@
+"""The comparison of laws with the optimum of their own work."""

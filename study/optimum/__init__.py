@@ -1,0 +1,1 @@
+"""The optimum: least peak torque, its certified lower bounds, and the record."""

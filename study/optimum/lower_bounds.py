@@ -1,0 +1,82 @@
+"""The certified lower bound of a scenario's least peak torque, as a claim with its certificate."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from decimal import ROUND_FLOOR, Decimal
+from typing import TYPE_CHECKING, Any
+
+from ...scenario import Scenario
+from ...verify.verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict
+from .run import NormKey, OptimumOptions, norm_keys, norm_of, transfer
+
+if TYPE_CHECKING:
+    from ...optim.bounds import LowerBound
+    from ...optim.problem import TransferProblem
+
+SOURCE = "docs/lower-bounds.md"
+
+
+def asks_for_optimum(scenario: Scenario) -> bool:
+    """Whether the scenario says anything about its optimum."""
+    return bool(scenario.optimum.model_fields_set)
+
+
+def own_bound_claim(scenario: Scenario) -> Claim:
+    """Bound the least peak in the scenario's own norm, with the certificate."""
+    from ...optim.bounds import certified_lower_bound
+
+    problem = transfer(scenario, norm_of(scenario, norm_keys(scenario, OptimumOptions())[0]))
+    return bound_claim(problem, certified_lower_bound(problem))
+
+
+def bound_claim(problem: TransferProblem, bound: LowerBound) -> Claim:
+    """Claim the largest bound that the stand-alone checker confirms, and name a larger one without a file."""
+    from ...optim.bounds.certificate import largest_certificate
+
+    norm, unit = problem.norm.name, problem.norm.unit
+    found = largest_certificate(problem, bound)
+    if found is None:
+        return Claim(
+            "optimum.bound",
+            f"least peak torque, {norm}: bounded from below",
+            f"Some peak above 0 {unit} is needed for the transfer.",
+            Verdict.UNDECIDED,
+            reason="no bound above 0 was found: the start's momentum may carry the turn",
+            next_step="give a later start, or a start at rest",
+            source=SOURCE,
+            counted=False,
+        )
+    named, certificate = found
+    least, larger = f"{below(named.value)} {unit}", ""
+    title = f"least peak torque, {norm}: at least {least} for any controller ({named.name})"
+    if named.name != bound.name:
+        title += f"; the larger bound by {bound.name} has no certificate"
+        larger = f" The larger bound {below(bound.value)} {unit} ({bound.name}) has no certificate."
+    summary = "travel, multipliers and potentials, proved anew by the stand-alone checker"
+    return Claim(
+        "optimum.bound",
+        title,
+        f"No torque of peak below {least} ({norm}) makes the transfer.{larger}",
+        Verdict.PROVED,
+        (Evidence(EvidenceKind.CERTIFICATE, summary, SOURCE, {"certificate": certificate}),),
+        (Quantity("least_peak", named.value, float("inf"), unit, rigorous=True, side="lower"),),
+        source=SOURCE,
+        counted=False,
+    )
+
+
+def below(value: float) -> str:
+    """Seven digits of a number > 0, rounded down."""
+    exact = Decimal(value)
+    return f"{exact.quantize(Decimal(1).scaleb(exact.adjusted() - 6), ROUND_FLOOR).normalize():g}"
+
+
+def transfers_data(scenario: Scenario) -> list[Mapping[str, Any]]:
+    """The scenario's transfers in every norm, as certificates say them."""
+    from ...optim.bounds.certificate import transfer_data
+
+    keys: list[NormKey] = ["component", "euclidean"]
+    if scenario.optimum.thrusters is not None:
+        keys.append("thrusters")
+    return [transfer_data(transfer(scenario, norm_of(scenario, key)))["transfer"] for key in keys]

@@ -1,0 +1,235 @@
+"""What an optimum study found, as the sections and arrays of a record."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...reports import parts
+from ...reports.provenance import provenance
+from ...reports.record import Record
+from ..check.record import scenario_entry
+from .run import Optimum, OptimumStudy
+
+if TYPE_CHECKING:
+    from ...optim.peak import LeastImpulseFound, LeastTime, Switching, TorqueHistory
+
+Array = NDArray[np.float64]
+
+
+def optimum_record(study: OptimumStudy, *, date: str = "", author: str = "", command: str = "") -> Record:
+    """The record of one optimum study."""
+    scenario = study.scenario
+    entries, arrays = optimum_sections(study)
+    effort = [e for entry in entries for e in entry.get("effort", ())]
+    found = provenance(
+        scenario_name=scenario.name,
+        scenario_text=scenario.path.read_text(encoding="utf-8-sig"),
+        date=date,
+        author=author,
+        command=command or f"intermit optimum {scenario.path.name}",
+        seeds={"starts": scenario.optimum.seed if study.options.seed is None else study.options.seed},
+        options={"solver": study.options.solver, "mesh_gap": study.options.mesh_gap},
+        effort=effort,
+    )
+    return Record.create(
+        title=f"Least peak torque of {scenario.name}",
+        provenance=found | {"input_sha256": scenario.sha256},
+        sections={"scenario": scenario_entry(scenario), "optimum": entries},
+        arrays=arrays,
+        outcome={"exit_code": study.exit_code, "sentence": study.sentence},
+    )
+
+
+def optimum_sections(study: OptimumStudy) -> tuple[list[dict[str, Any]], dict[str, Array]]:
+    """Section `optimum` and the arrays it names."""
+    entries: list[dict[str, Any]] = []
+    arrays: dict[str, Array] = {}
+    for optimum in study.optima:
+        entry, held = optimum_entry(study, optimum)
+        entries.append(entry)
+        arrays |= held
+    return entries, arrays
+
+
+def optimum_entry(study: OptimumStudy, optimum: Optimum) -> tuple[dict[str, Any], dict[str, Array]]:
+    """One least peak with its checks, and its history on a grid."""
+    answer, problem = optimum.answer, optimum.problem
+    key, unit = f"optimum.{optimum.key}", problem.norm.unit
+    held = history_arrays(optimum, key)
+    entry: dict[str, Any] = {
+        "key": key,
+        "label": f"least peak, {problem.norm.name}",
+        "norm": optimum.key,
+        "profile": study.scenario.optimum.profile,
+        "terminal": terminal_words(optimum),
+        "final_time": parts.quantity("final_time", float(problem.horizon), unit="s"),
+        "value": parts.figure_of("least_peak", answer.peak if held else None, digits=6, unit=unit),
+        "residuals": residuals(optimum),
+        "local_optima": {
+            "starts": len(answer.search.starts),
+            "values": list(answer.search.local_optima),
+            "unit": unit,
+            "spread": parts.figure_of("spread", answer.search.spread, digits=3),
+        },
+        "effort": [
+            {"label": f"convex or Newton programs, {optimum.key}", "count": answer.iterations},
+            {"label": f"starts, {optimum.key}", "count": len(answer.search.starts)},
+        ],
+        "notes": notes(study.scenario.path.name, optimum),
+    }
+    if optimum.bound is not None:
+        bound = optimum.bound
+        entry["bound"] = _lower("certified_bound", bound.value, unit)
+        entry["bound_name"] = bound.name
+        entry["other_bounds"] = [_lower(b.name, b.value, unit) for b in bound.all if b is not bound.best]
+    if optimum.gap is not None:
+        entry["gap"] = parts.quantity("gap", 0.0, 100 * max(0.0, optimum.gap), unit="%", side="upper")
+    if held:
+        entry["arrays"] = {name.removeprefix(f"{key}."): name for name in held}
+    if answer.switching is not None:
+        entry["switch_times"] = [time for time, _ in answer.switching.switch_times]
+    return entry, held
+
+
+def least_time_words(least: LeastTime) -> str:
+    """The least time found and the latest at which none was, in words."""
+    limit = f"{least.limit:g} {least.answer.problem.norm.unit}"
+    if least.time is None:
+        return f"no transfer within {limit} was found by {float(least.earlier):g} s"
+    return (
+        f"least time within {limit}: {float(least.time):.6g} s "
+        f"(none found {float(least.time - least.earlier):.1g} s sooner; {least.solves} least peaks solved)"
+    )
+
+
+def least_impulse_words(least: LeastImpulseFound) -> str:
+    """The least impulse found and what was checked of it, in words."""
+    answer, unit = least.answer, least.answer.problem.norm.unit
+    if not least.found:
+        return f"no transfer within {least.limit:g} {unit} was found, so none of least impulse"
+    said = (
+        f"least impulse within {least.limit:g} {unit}: {least.impulse:.6g} {unit} s "
+        f"({answer.standing.value}; end missed by {answer.flown.terminal_excess:.1g} rad, "
+        f"optimality gap {answer.optimality_gap:.2g}, finer cells gain {answer.mesh_gap:.2g})"
+        if answer.flown is not None
+        else ""
+    )
+    return f"{said}: {answer.reason}" if answer.reason else said
+
+
+def _lower(name: str, value: float, unit: str) -> dict[str, Any]:
+    return parts.quantity(name, value, unit=unit, rigorous=True, side="lower")
+
+
+def start_words(optimum: Optimum) -> str:
+    """The start in words: angle to the target, and how it turns."""
+    problem = optimum.problem
+    rate = float(np.linalg.norm(problem.start_rate))
+    turning = f"turning at {rate:.4g} rad/s" if rate > 0 else "at rest"
+    return f"{np.degrees(problem.angle):.6g} deg from the target, {turning}"
+
+
+def impulse_words(optimum: Optimum) -> str:
+    """The impulse of the least-peak history, and what it is the integral of."""
+    problem, kind = optimum.problem, {"component": " (axes added up)", "thrusters": " (forces added up)"}
+    return f"{optimum.answer.impulse:.6g} {problem.norm.unit} s{kind.get(optimum.key, '')}"
+
+
+def switch_words(optimum: Optimum, time: float, component: int) -> str:
+    """A switch: when, and which axis or thruster."""
+    if component < 0:
+        return f"{time:.4f} s"
+    which = f"thruster {component + 1}" if optimum.key == "thrusters" else "xyz"[component]
+    return f"{time:.4f} s ({which})"
+
+
+def terminal_words(optimum: Optimum) -> str:
+    """The terminal condition in words."""
+    terminal = optimum.problem.terminal
+    if terminal.is_exact:
+        return "exactly at rest at the target"
+    return f"|bv| <= {float(terminal.attitude):g}, |w| <= {float(terminal.rate):g} rad/s"
+
+
+def residuals(optimum: Optimum) -> list[dict[str, Any]]:
+    """Checks of the answer, recomputed outside the solver."""
+    answer = optimum.answer
+    if answer.flown is None or answer.switching is None:
+        return []
+    end = answer.flown.terminal_excess
+    upper = (
+        (
+            "terminal_excess",
+            "terminal condition missed by (integrated again)",
+            end,
+            "rad",
+        ),
+        ("defect", "states against the independent integration", answer.defect, ""),
+        ("optimality_gap", "optimality gap (stationarity and complementarity)", answer.optimality_gap, ""),
+        ("mesh_gap", "estimated gain of finer cells", answer.mesh_gap, ""),
+        ("pontryagin", "residual of Pontryagin's condition", answer.switching.residual, ""),
+    )
+    return [
+        parts.quantity(name, 0.0, max(0.0, value), unit=unit, label=label, side="upper")
+        for name, label, value, unit in upper
+    ]
+
+
+def recheck_words(name: str, optimum: Optimum) -> str:
+    """How the bound can be proved anew, in words."""
+    assert optimum.bound is not None
+    return (
+        f"To prove the bound anew: intermit optimum {name} --norm {optimum.key} --certificate FILE, then "
+        "intermit recheck FILE, or the stand-alone checker: python -I -S checker.py FILE."
+    )
+
+
+def notes(name: str, optimum: Optimum) -> list[str]:
+    """Standing, reasons and limits in words."""
+    answer = optimum.answer
+    said = [f"{answer.standing.value}: solved by the {answer.solver} on {answer.cells} cells."]
+    if answer.reason:
+        said.append(f"Reason: {answer.reason}. Next step: {answer.next_step}.")
+    if optimum.hopeless is not None:
+        said.append(f"Limit: {optimum.hopeless.reason}. Next step: {optimum.hopeless.next_step}.")
+    if optimum.least_time is not None:
+        said.append(least_time_words(optimum.least_time).capitalize() + ".")
+    if optimum.least_impulse is not None:
+        words = least_impulse_words(optimum.least_impulse)
+        said.append(words[0].upper() + words[1:] + ".")
+    if optimum.bound is not None:
+        said.append(recheck_words(name, optimum))
+    if answer.history is not None:
+        said.append("The best of the starts: an upper bound on the least peak, local optimality checked.")
+    return said
+
+
+def history_arrays(optimum: Optimum, key: str) -> dict[str, Array]:
+    """The history, its states and the switching function on one grid of instants."""
+    from ...optim.peak.check.verify_answer import sample_flight
+
+    answer = optimum.answer
+    if answer.history is None or answer.switching is None:
+        return {}
+    history = answer.history
+    times, states = sample_flight(optimum.problem, history)
+    rate = states[:, 4:]
+    return {
+        f"{key}.time": times,
+        f"{key}.torque": history.torque(times),
+        f"{key}.profile": history.window(times),
+        f"{key}.quaternion": states[:, :4],
+        f"{key}.rate": rate,
+        f"{key}.switching": _switching(answer.switching, history, times),
+        f"{key}.momentum": np.linalg.norm(rate @ optimum.problem.body.inertia, axis=1),
+    }
+
+
+def _switching(switching: Switching, history: TorqueHistory, times: Array) -> Array:
+    """Switching function on the grid, zero outside the windows."""
+    flat = switching.sigma.reshape(-1, switching.sigma.shape[-1])
+    value = np.stack([np.interp(times, switching.times.ravel(), column) for column in flat.T], axis=1)
+    return np.asarray(np.where(history.window(times)[:, None] > 0.0, value, 0.0))

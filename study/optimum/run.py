@@ -1,0 +1,303 @@
+"""The optimum job: the least peak torque through a scenario's windows, in each norm asked for."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import TYPE_CHECKING, Literal, final
+
+from ...optim.norms import Euclidean, LargestComponent, Norm, ThrusterAxes
+from ...optim.problem import Terminal, TransferProblem, WindowProfile
+from ...scenario import Scenario
+
+if TYPE_CHECKING:
+    from ...optim.bounds import LowerBound
+    from ...optim.peak import LeastImpulseFound, LeastTime, PeakAnswer
+    from ...optim.peak.search.explain import Explanation
+    from ...optim.peak.search.options import LocalSolver
+
+Progress = Callable[[str, float], None]
+NormKey = Literal["component", "euclidean", "thrusters"]
+SolverKey = Literal["auto", "fast", "reference"]
+INVERSION_ALLOWANCE = 1e-7
+"""A checked history misses the end by up to 1e-8 rad, which this much of the peak more than covers."""
+
+
+class BoundInversionError(RuntimeError):
+    """A feasible history below its certified bound: one of the two is wrong, and the run must stop."""
+
+
+@final
+@dataclass(frozen=True, kw_only=True)
+class OptimumOptions:
+    """What to solve beyond what the scenario says.
+
+    Attributes
+    ----------
+    norms : norms to solve in; empty for both, or the thrusters alone if the scenario names some
+    starts, seed : the multi-start search; None for the scenario's own
+    solver : "auto" is the fast one with the reference as fallback
+    mesh_gap : largest fraction of the peak that finer cells may still gain
+    bound : compute the certified lower bound beside each optimum
+    least_time, least_impulse : find the least transfer time, the least impulse, within the limit too
+    """
+
+    norms: tuple[NormKey, ...] = ()
+    starts: int | None = None
+    seed: int | None = None
+    solver: SolverKey = "auto"
+    mesh_gap: float = 1e-6
+    bound: bool = True
+    least_time: bool = False
+    least_impulse: bool = False
+
+
+@final
+@dataclass(frozen=True)
+class Optimum:
+    """One transfer solved.
+
+    Attributes
+    ----------
+    key : name of the norm in the record
+    answer : the least peak found and its checks
+    limit : the torque (or force) limit given for this norm, its unit, or None
+    hopeless : why the limit cannot be met by any controller, or None
+    bound : certified lower bound, computed apart from the answer; None where there is none
+    least_time, least_impulse : within the limit; None if not asked for
+    """
+
+    key: NormKey
+    problem: TransferProblem
+    answer: PeakAnswer
+    limit: float | None
+    hopeless: Explanation | None
+    bound: LowerBound | None = None
+    least_time: LeastTime | None = None
+    least_impulse: LeastImpulseFound | None = None
+
+    @property
+    def gap(self) -> float | None:
+        """(peak found - certified bound) / peak found; None without both."""
+        if self.bound is None or self.answer.history is None or self.answer.peak <= 0:
+            return None
+        return 1.0 - self.bound.value / self.answer.peak
+
+    @property
+    def limit_is_refuted(self) -> bool:
+        """Whether the limit lies below the certified bound: then no controller whatever can meet it."""
+        return self.limit is not None and self.bound is not None and self.limit < self.bound.value
+
+    @property
+    def within_limit(self) -> bool | None:
+        """Whether the history found respects the limit; None without a limit or a history."""
+        return None if self.limit is None or self.answer.history is None else self.answer.peak <= self.limit
+
+    @property
+    def _limit_is_ruled_out(self) -> bool:
+        return self.limit_is_refuted or (self.hopeless is not None and self.hopeless.certain)
+
+    @property
+    def outcome(self) -> str:
+        """What became of it, in a few words: the standing, and the limit if there is one."""
+        from ...optim.peak import Standing
+
+        if self.answer.standing is Standing.IMPOSSIBLE:
+            return "impossible"
+        if self._limit_is_ruled_out:
+            return "impossible within its limit"
+        if self.answer.standing is Standing.UNDECIDED:
+            return "left open"
+        return "found and checked" + (" but above its limit" if self.within_limit is False else "")
+
+    @property
+    def exit_code(self) -> int:
+        """0 solved (and within the limit), 1 impossible, 3 left open."""
+        from ...optim.peak import Standing
+
+        if self.answer.standing is Standing.IMPOSSIBLE or self._limit_is_ruled_out:
+            return 1
+        if self.answer.standing is Standing.UNDECIDED or self.within_limit is False:
+            return 3
+        return 0
+
+
+@final
+@dataclass(frozen=True)
+class OptimumStudy:
+    """Every transfer of a scenario, solved."""
+
+    scenario: Scenario
+    options: OptimumOptions
+    optima: tuple[Optimum, ...]
+
+    @property
+    def exit_code(self) -> int:
+        """1 if one is impossible, else 3 if one is left open, else 0."""
+        codes = {optimum.exit_code for optimum in self.optima}
+        return 1 if 1 in codes else 3 if 3 in codes else 0
+
+    @property
+    def sentence(self) -> str:
+        """The outcome in one sentence."""
+        counts = Counter(optimum.outcome for optimum in self.optima)
+        parts = [f"{n} {words}" for words, n in counts.items()]
+        return f"Of {len(self.optima)} least peaks: {'; '.join(parts)}."
+
+
+def run_optimum(
+    scenario: Scenario, options: OptimumOptions | None = None, progress: Progress | None = None
+) -> OptimumStudy:
+    """Find the least peak of the scenario's transfer in each norm."""
+    from ...optim.peak import MultiStart, Refinement, minimum_impulse, minimum_peak, minimum_time
+    from ...optim.peak.search.explain import explain
+
+    options = options if options is not None else OptimumOptions()
+    tell = progress if progress is not None else _silent
+    table = scenario.optimum
+    search = MultiStart(
+        starts=table.starts if options.starts is None else options.starts,
+        seed=table.seed if options.seed is None else options.seed,
+    )
+    refinement, quick = Refinement(mesh_gap=options.mesh_gap), Refinement(mesh_gap=1e-5)
+    keys, optima = norm_keys(scenario, options), []
+    _needs_a_limit(scenario, options, keys)
+    for i, key in enumerate(keys):
+        tell(f"optimum, {key}", i / len(keys))
+        problem = transfer(scenario, norm_of(scenario, key))
+        limit = limit_of(scenario, key)
+        hopeless = explain(problem, limit)
+        answer = minimum_peak(problem, solver=_solver(options.solver), search=search, refinement=refinement)
+        bound = _bound(problem, answer, options)
+        least = None
+        if options.least_time and limit is not None and hopeless is None:
+            tell(f"least time, {key}", (i + 0.5) / len(keys))
+            least = minimum_time(problem, limit, search=replace(search, starts=1), refinement=quick)
+        spent = None
+        if options.least_impulse and limit is not None and hopeless is None:
+            tell(f"least impulse, {key}", (i + 0.8) / len(keys))
+            few = replace(search, starts=min(2, search.starts))
+            spent = minimum_impulse(problem, limit, search=few)
+        optima.append(Optimum(key, problem, answer, limit, hopeless, bound, least, spent))
+    tell("done", 1.0)
+    return OptimumStudy(scenario, options, tuple(optima))
+
+
+def _needs_a_limit(scenario: Scenario, options: OptimumOptions, keys: tuple[NormKey, ...]) -> None:
+    """Refuse a question within a limit where no limit is given for any norm.
+
+    Raises
+    ------
+    ScenarioError
+        Naming the key that is missing.
+    """
+    from ...scenario import ScenarioError
+
+    asked = [name for name in ("least_time", "least_impulse") if getattr(options, name)]
+    if asked and all(limit_of(scenario, key) is None for key in keys):
+        words = " and ".join(name.replace("_", " ") for name in asked)
+        raise ScenarioError(
+            f"{scenario.path.name}: optimum.torque_limit",
+            f"is needed for the {words} (norm {', '.join(keys)})",
+        )
+
+
+def norm_keys(scenario: Scenario, options: OptimumOptions) -> tuple[NormKey, ...]:
+    """Norms to solve in, the scenario's own first."""
+    if options.norms:
+        return options.norms
+    if scenario.optimum.thrusters is not None:
+        return ("thrusters",)
+    return ("component", "euclidean") if scenario.optimum.norm == "component" else ("euclidean", "component")
+
+
+def norm_of(scenario: Scenario, key: NormKey) -> Norm:
+    """The norm a key names.
+
+    Raises
+    ------
+    ScenarioError
+        If thrusters are asked for and the scenario names none, or none that span three axes.
+    """
+    from ...scenario import ScenarioError
+
+    if key == "euclidean":
+        return Euclidean()
+    if key == "component":
+        return LargestComponent()
+    where = f"{scenario.path.name}: optimum.thrusters"
+    if scenario.optimum.thrusters is None:
+        raise ScenarioError(where, "is needed for the peak thruster force: give one axis a thruster")
+    try:
+        return ThrusterAxes(tuple(scenario.optimum.thrusters))
+    except ValueError as error:
+        raise ScenarioError(where, str(error)) from None
+
+
+def transfer(scenario: Scenario, norm: Norm) -> TransferProblem:
+    """State the scenario's transfer: its start, windows, final time and tolerances."""
+    table = scenario.optimum
+    return TransferProblem.through(
+        scenario.schedule,
+        body=scenario.body,
+        horizon=final_time(scenario),
+        attitude=[Fraction(x) for x in scenario.initial.attitude],
+        rate=scenario.initial.exact_rate,
+        norm=norm,
+        terminal=Terminal(attitude=table.attitude_tolerance, rate=table.rate_tolerance),
+        profile=WindowProfile.GAIN if table.profile == "gain" else WindowProfile.FULL,
+    )
+
+
+def final_time(scenario: Scenario) -> Fraction:
+    """Final time asked for, else the settling time asked of the laws, else the horizon, s."""
+    if scenario.optimum.final_time is not None:
+        return scenario.optimum.final_time
+    return scenario.horizon if scenario.tune.settle is None else scenario.tune.settle
+
+
+def limit_of(scenario: Scenario, key: NormKey) -> float | None:
+    """Limit given for a norm: the optimum's own for the norm it names, else the scenario's."""
+    table = scenario.optimum
+    own = "thrusters" if table.thrusters is not None else table.norm
+    if table.torque_limit is not None and key == own:
+        return float(table.torque_limit)
+    if scenario.limits is not None and scenario.limits.norm == key:
+        return float(scenario.limits.torque)
+    return None
+
+
+def _bound(problem: TransferProblem, answer: PeakAnswer, options: OptimumOptions) -> LowerBound | None:
+    """Certified lower bound, never computed from the answer; their order is enforced.
+
+    Raises
+    ------
+    BoundInversionError
+        If a checked history has a peak below the bound.
+    """
+    from ...optim.bounds import certified_lower_bound
+    from ...optim.peak import Standing
+
+    if not options.bound or answer.history is None:
+        return None
+    bound = certified_lower_bound(problem)
+    if answer.standing is Standing.CHECKED and bound.value > answer.peak * (1.0 + INVERSION_ALLOWANCE):
+        raise BoundInversionError(
+            f"the optimum found, {answer.peak:.9g} {bound.unit}, lies below its certified bound "
+            f"{bound.value:.9g} {bound.unit} ({bound.name})"
+        )
+    return bound
+
+
+def _solver(key: SolverKey) -> LocalSolver | None:
+    from ...optim.peak import NonlinearProgram, SequentialConvex
+
+    if key == "auto":
+        return None
+    return SequentialConvex() if key == "fast" else NonlinearProgram()
+
+
+def _silent(stage: str, fraction: float) -> None:
+    del stage, fraction

@@ -1,0 +1,1 @@
+"""The paper's own matter: audit of its equations, its figures, its statements."""

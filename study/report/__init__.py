@@ -1,0 +1,1 @@
+"""The report: everything its pages show, in one record."""

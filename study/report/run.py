@@ -1,0 +1,132 @@
+"""Everything a report shows, in one record: check, optimum, comparison, and what [report] asks for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, field
+from multiprocessing import get_context
+from typing import final
+
+from ...reports.join import join
+from ...reports.record import Record
+from ...reports.values import thaw
+from ...scenario import Scenario
+from ..check.record import check_record
+from ..check.run import CheckOptions, CheckStudy, run_check
+from ..check.workers import ignore_interrupt
+from ..threads import one_thread_each
+
+Progress = Callable[[str, float], None]
+
+
+@final
+@dataclass(frozen=True, kw_only=True)
+class ReportOptions:
+    """What a report holds beside the check.
+
+    Attributes
+    ----------
+    optimum : the least peak any controller could do with, for the scenario's final time
+    comparison : each law against the optimum for its own settling time
+    front, audit : False leaves out what the scenario's [report] asks for
+    check : what the check does beyond its claims; its `workers` share the points of a front too
+    """
+
+    optimum: bool = True
+    comparison: bool = True
+    front: bool = True
+    audit: bool = True
+    check: CheckOptions = field(default_factory=CheckOptions)
+
+
+def run_report(
+    scenario: Scenario,
+    options: ReportOptions | None = None,
+    *,
+    date: str = "",
+    author: str = "",
+    progress: Progress | None = None,
+    checked: Callable[[CheckStudy], None] | None = None,
+) -> Record:
+    """Run what a report shows and join it into one record; the outcome is the check's.
+
+    `checked` is told the check's findings as soon as they are there.
+
+    Raises
+    ------
+    ScenarioError
+        If the scenario cannot be checked as it asks.
+    """
+    options = options if options is not None else ReportOptions()
+    tell = progress if progress is not None else _silent
+    command = f"intermit report {scenario.path.name}"
+    check = run_check(scenario, options.check, _part(tell, 0.0, 0.4))
+    if checked is not None:
+        checked(check)
+    first = check_record(check, date=date, author=author, command=command)
+    records = [first, *_further(scenario, options, tell, first)]
+    tell("done", 1.0)
+    return join(records, title=scenario.name, command=command, date=date, author=author)
+
+
+def _further(scenario: Scenario, options: ReportOptions, tell: Progress, check: Record) -> Iterator[Record]:
+    """Records of the same input beside the check's."""
+    if options.optimum:
+        from ..optimum.record import optimum_record
+        from ..optimum.run import OptimumOptions, run_optimum
+
+        yield optimum_record(run_optimum(scenario, OptimumOptions(), _part(tell, 0.4, 0.5)))
+    if options.comparison:
+        from ..compare.run import comparison_record, run_comparison
+
+        tell("comparison", 0.5)
+        yield comparison_record(run_comparison(scenario))
+    if options.front and scenario.report.front:
+        tell("front", 0.6)
+        yield _front(scenario, options.check.workers)
+    if options.audit and scenario.report.audit:
+        tell("audit", 0.98)
+        yield _audit(check)
+
+
+def _front(scenario: Scenario, workers: int) -> Record:
+    """Peak torque against settling time, its points shared by the workers."""
+    from ..tune.run import front_record, run_front
+
+    asked = scenario.report
+    context = get_context("spawn")
+    with (
+        one_thread_each(),
+        ProcessPoolExecutor(workers, mp_context=context, initializer=ignore_interrupt) as executor,
+    ):
+        found = run_front(
+            scenario,
+            asked.front,
+            norm=asked.front_norm,
+            labels=asked.front_laws,
+            evaluations=asked.front_evaluations,
+            executor=executor,
+        )
+    return front_record(scenario, found)
+
+
+def _audit(check: Record) -> Record:
+    """The audit's tables as part of this input's record.
+
+    Its claims stay in its own record: they are about the paper's equations and decide nothing here.
+    """
+    from ..paper.audit_record import audit_record, run_audit
+
+    section = thaw(audit_record(run_audit()).sections)["audit"]
+    del section["claims"]
+    section["notes"] += ["`intermit audit --json FILE` writes every counterexample in full."]
+    return Record.create(title="audit", provenance=check.document["provenance"], sections={"audit": section})
+
+
+def _part(tell: Progress, start: float, end: float) -> Progress:
+    return lambda stage, fraction: tell(stage, start + (end - start) * fraction)
+
+
+def _silent(stage: str, fraction: float) -> None:
+    del stage, fraction

@@ -1,0 +1,179 @@
+"""Schedule study: peak, floor and settling against duty cycle and period; the least on-time that suffices."""
+
+from __future__ import annotations
+
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, final
+
+from ...optim.comparison.equal_terms import NormName
+from ...optim.schedule_study import LeastOnTime, ScheduleCase, least_on_time, study_schedules
+from ...optim.tuning.conditions import certified_floor
+from ...reports import parts
+from ...reports.record import Record
+from ...scenario import LawChoice, Scenario, ScenarioError
+from ..collections import Arrays, certified_below, collection_record, newtons, task_of
+
+DEFAULT_DUTY = (Fraction(1, 5), Fraction(3, 10), Fraction(2, 5), Fraction(1, 2), Fraction(3, 5))
+"""Duty cycles studied where the scenario names none."""
+
+
+@final
+@dataclass(frozen=True, eq=False)
+class ScheduleStudy:
+    """Cases of one law over periods and duty cycles, and the inverse answers by period."""
+
+    scenario: Scenario
+    law: LawChoice
+    norm: str
+    time: Fraction
+    cases: tuple[ScheduleCase, ...]
+    least: tuple[LeastOnTime, ...]
+
+
+def run_schedule_study(
+    scenario: Scenario,
+    *,
+    law: str | None = None,
+    norm: NormName | None = None,
+    executor: Executor | None = None,
+) -> ScheduleStudy:
+    """Study the schedules of [study] for one law of the scenario, in the norm of [optimum] or the given.
+
+    Raises
+    ------
+    ScenarioError
+        If the scenario has no law, or neither it nor its schedule names a period.
+    """
+    if not scenario.laws:
+        raise ScenarioError(scenario.path.name, "has no [[law]] to study")
+    choice = scenario.law(law) if law is not None else scenario.laws[0]
+    own = scenario.schedule.period
+    periods = scenario.study.periods or ((own,) if own is not None else ())
+    if not periods:
+        raise ScenarioError(
+            f"{scenario.path.name}: study.periods", "required with a finite table, but missing"
+        )
+    duty = scenario.study.duty_cycles or DEFAULT_DUTY
+    time = scenario.optimum.final_time or scenario.horizon
+    built, task, norm = choice.build(), task_of(scenario), norm or scenario.optimum.norm
+    cases = study_schedules(
+        built, task, periods, duty, time=time, norm=norm, floor=certified_floor, executor=executor
+    )
+    least: tuple[LeastOnTime, ...] = ()
+    if scenario.study.torque_limit is not None:
+        least = tuple(
+            least_on_time(
+                built, task, period, torque_limit=scenario.study.torque_limit, time=time, norm=norm,
+                floor=certified_floor,
+            )
+            for period in periods
+        )  # fmt: skip
+    return ScheduleStudy(scenario, choice, norm, time, cases, least)
+
+
+def schedule_record(study: ScheduleStudy) -> Record:
+    """The study as a table, a figure for each quantity, and the inverse answers."""
+    arrays = Arrays()
+    tables = [_cases_table(study)] + ([_least_table(study)] if study.least else [])
+    section = {
+        "title": f"Schedule study of {study.law.label}",
+        "summary": f"One Hermite window a period; optimum and bound for {float(study.time):g} s to the "
+        "scenario's terminal tolerances.",
+        "tables": tables,
+        "figures": [
+            _figure(study, arrays, "law", "peak of the law", "N m", lambda c: c.law_peak),
+            _figure(study, arrays, "optimum", "optimum found", "N m", lambda c: c.best.optimum),
+            _figure(study, arrays, "bound", "certified bound", "N m", lambda c: c.best.bound),
+            _figure(study, arrays, "floor", "certified floor of R", "s", lambda c: c.floor),
+        ],
+    }
+    return collection_record(
+        study.scenario,
+        title=f"Schedule study of {study.scenario.name}",
+        command=f"intermit sweep {study.scenario.path.name}",
+        sections={"schedule_study": section},
+        arrays=arrays,
+        options={"norm": study.norm, "time": float(study.time), "law": study.law.label},
+    )
+
+
+def _seconds(name: str, value: float | None, missing: str) -> Any:
+    return missing if value is None else parts.figure_of(name, value, digits=6, unit="s")
+
+
+def _exact(name: str, value: Fraction, unit: str = "s") -> dict[str, Any]:
+    return parts.quantity(name, float(value), unit=unit)
+
+
+def _cases_table(study: ScheduleStudy) -> dict[str, Any]:
+    columns = [
+        parts.column("period", "period", "s"),
+        parts.column("on", "on-time", "s"),
+        parts.column("floor", "R certified", "s"),
+        parts.column("settling", "settling", "s"),
+        parts.column("law", "law's peak", "N m"),
+        parts.column("optimum", "optimum found", "N m"),
+        parts.column("bound", "certified bound", "N m"),
+    ]
+    rows = [
+        {
+            "period": _exact("period", case.period),
+            "on": _exact("on", case.on_time),
+            "floor": "none proved"
+            if case.floor is None
+            else parts.quantity("floor", case.floor, unit="s", rigorous=True, side="lower"),
+            "settling": _seconds("settling", case.settling, "not within the horizon"),
+            "law": newtons("law", case.law_peak) if case.law_peak is not None else "run failed",
+            "optimum": case.best.answer.reason
+            if case.best.optimum is None
+            else newtons("optimum", case.best.optimum),
+            "bound": certified_below("bound", case.best.bound),
+        }
+        for case in study.cases
+    ]
+    return parts.table("schedules", f"Periods and duty cycles, {study.norm} norm", columns, rows)
+
+
+def _least_table(study: ScheduleStudy) -> dict[str, Any]:
+    columns = [
+        parts.column("period", "period", "s"),
+        parts.column("suffices", "on-time that suffices", "s"),
+        parts.column("fails", "on-time that does not", "s"),
+        parts.column("floor", "R certified there", "s"),
+        parts.column("optimum", "optimum there", "N m"),
+        parts.column("limiting", "what fails below"),
+    ]
+    rows = []
+    for answer in study.least:
+        floor = answer.floor
+        rows.append(
+            {
+                "period": _exact("period", answer.period),
+                "suffices": "none" if answer.suffices is None else _exact("suffices", answer.suffices),
+                "fails": _exact("fails", answer.fails),
+                "floor": None
+                if floor is None
+                else parts.quantity("floor", floor, unit="s", rigorous=True, side="lower"),
+                "optimum": None if answer.optimum is None else newtons("optimum", answer.optimum),
+                "limiting": answer.limiting,
+            }
+        )
+    return parts.table("least", "Least on-time a period", columns, rows)
+
+
+def _figure(
+    study: ScheduleStudy, arrays: Arrays, key: str, title: str, unit: str, value: Any
+) -> dict[str, Any]:
+    lines = []
+    for number, period in enumerate(dict.fromkeys(case.period for case in study.cases), start=1):
+        known = [(c.duty_cycle, value(c)) for c in study.cases if c.period == period and value(c) is not None]
+        if known:
+            x = arrays.put(f"study.{key}.{number}.duty", [d for d, _ in known])
+            y = arrays.put(f"study.{key}.{number}.value", [v for _, v in known])
+            lines.append(parts.series(f"period {float(period):g} s", x, y, style="line+points"))
+    return parts.figure(
+        f"study_{key}", title, parts.axis("duty cycle"), parts.axis(title, unit), lines,
+        alt=f"{title} against duty cycle, one line a period.",
+    )  # fmt: skip

@@ -1,1 +1,0 @@
-"""Enclosures: exact Bernstein forms, balls, the bisection loop, and proved sub- and supersolutions."""

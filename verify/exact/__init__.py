@@ -1,0 +1,1 @@
+"""Exact and outward-rounded arithmetic: balls, Bernstein forms, bisection, rational quantities."""

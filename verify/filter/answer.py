@@ -1,0 +1,94 @@
+"""One call for a check: certify the floor and everything that follows from it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import final
+
+from ...models.schedule import Schedule
+from ..verdict import Claim
+from .certificate import floor_certificate
+from .certify import LARGEST_PERIOD, Floor, certify_floor
+from .claims import FloorFacts, convergence_claim, floor_claim, reaches_far_enough, torque_claim
+from .converged import ConvergedFilter, ConvergedFloor
+from .convergence import Convergence, analyse_convergence
+from .question import FloorQuestion
+from .refine import settle_sooner
+from .torque_bound import TorqueBound, torque_bound
+from .worst_found import WorstFound, find_worst
+
+LONGEST_TABLE = 400
+"""Windows of a finite table that are certified; of a longer one the claims say up to when they speak."""
+SEARCH_PERIODS = 3
+"""Periods simulated when looking for the worst start: the least R is seen early."""
+
+
+@final
+@dataclass(frozen=True)
+class FloorAnswer:
+    """Everything that was found; None where it does not apply.
+
+    Attributes
+    ----------
+    claims : "filter.floor", "convergence" and, if a limit was given, "torque.limit"
+    """
+
+    claims: tuple[Claim, ...]
+    floor: Floor | None
+    converged: ConvergedFloor | None
+    worst: WorstFound | None
+    torque: TorqueBound | None
+    convergence: Convergence | None
+
+
+def answer(question: FloorQuestion) -> FloorAnswer:
+    """Answer a question about the floor of R."""
+    q = question
+    horizon = None
+    if q.schedule.period is None:
+        last = q.schedule.windows[:LONGEST_TABLE][-1].off
+        horizon = min(q.horizon, q.schedule.end) if q.horizon is not None else min(last, q.schedule.end)
+    floor = certify_floor(q.law, q.bounds, q.schedule, q.initial, horizon=horizon, options=q.options)
+    tolerances = {"attitude": float(q.attitude), "rate": float(q.rate)}
+    if floor is not None:
+        floor = settle_sooner(floor, **tolerances, options=q.options)
+    decay = q.law.parameters.get("lambda")
+    has_filter = any(s.name == "R" for s in q.law.controller_states)
+    converged = None
+    short = q.schedule.period is not None and len(q.schedule.windows) <= LARGEST_PERIOD
+    if short and has_filter and decay is not None and decay > 0:
+        converged = ConvergedFilter(q.schedule, decay).floor()
+    worst = None
+    if q.search is not None and has_filter:
+        worst = find_worst(
+            q.law, q.body, q.schedule, q.initial,
+            horizon=_search_horizon(q.schedule), max_rate=q.max_rate, search=q.search,
+        )  # fmt: skip
+    torque = found = None
+    if floor is not None and floor.steps:
+        torque = torque_bound(floor)
+        found = analyse_convergence(floor, **tolerances)
+    certificate = None
+    if floor is not None and reaches_far_enough(floor):
+        certificate = floor_certificate(q, floor, convergence=found, torque=torque)
+    facts = FloorFacts(
+        law_name=q.law.name,
+        floor=floor,
+        converged=converged,
+        along_run=q.run_floor,
+        worst=worst,
+        certificate=certificate,
+    )
+    claims = [floor_claim(facts), convergence_claim(facts, found, float(q.attitude), float(q.rate))]
+    if q.torque_limit is not None:
+        claims.append(torque_claim(facts, torque, q.torque_limit, q.torque_norm, q.run_peak))
+    return FloorAnswer(tuple(claims), floor, converged, worst, torque, found)
+
+
+def _search_horizon(schedule: Schedule) -> Fraction:
+    """Three periods, or the end of a finite table's third window cycle."""
+    if schedule.period is not None and len(schedule.windows) == 1:
+        return SEARCH_PERIODS * schedule.period
+    later = [w.on for w in schedule.windows[SEARCH_PERIODS : SEARCH_PERIODS + 1]]
+    return later[0] if later else schedule.end

@@ -1,0 +1,118 @@
+"""A certified floor as a certificate: witnesses written out, for the stand-alone checker."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from fractions import Fraction
+from math import frexp
+from typing import TYPE_CHECKING, Any
+
+from ..certificates.format import Certificate
+from ..certificates.schedule import schedule_data
+from ..flow.stepping import Step
+from .certify import Floor
+from .flowpipe import Witness
+
+if TYPE_CHECKING:
+    from .convergence import Convergence
+    from .question import FloorQuestion
+    from .torque_bound import TorqueBound
+
+KIND = "filter-floor"
+MANTISSA = 53
+"""Bits of a float's mantissa."""
+LAW_PARAMETERS = ("lambda", "gamma", "R0", "k0", "a")
+
+
+def floor_certificate(
+    question: FloorQuestion,
+    floor: Floor,
+    *,
+    convergence: Convergence | None = None,
+    torque: TorqueBound | None = None,
+) -> Certificate:
+    """Certificate of R >= floor, of convergence where every witness has a repeating part, and of more.
+
+    Parameters
+    ----------
+    convergence : its settling time for the question's tolerances is claimed too
+    torque : its bound of |g u| is claimed too
+    """
+    q, data = question, question_data(question)
+    claim: dict[str, Any] = {"floor": Fraction(floor.value)}
+    tails = [w.tail for w in floor.witnesses]
+    if floor.horizon is not None:
+        claim["horizon"] = floor.horizon
+    else:
+        ratios = [max(t.ratios.values(), default=0.0) for t in tails if t is not None]
+        claim["ratio"] = Fraction(max(ratios))
+        claim["ratio_from"] = max(t.start for t in tails if t is not None)
+    if convergence is not None and convergence.settling is not None:
+        time = Fraction(convergence.settling)
+        claim["settling"] = {"time": time, "attitude": q.attitude, "rate": q.rate}
+    if torque is not None:
+        claim["torque"] = Fraction(torque.applied)
+    return Certificate(KIND, data, claim, _witness(floor))
+
+
+def question_data(question: FloorQuestion) -> dict[str, Any]:
+    """What a floor's claims speak about: body, law by name, schedule and initial set."""
+    q = question
+    data: dict[str, Any] = {
+        "inertia": q.body.exact_inertia,
+        "law": {"name": q.law.name},
+        "parameters": {n: v for n, v in q.law.parameters.items() if n in LAW_PARAMETERS},
+        "schedule": schedule_data(q.schedule),
+        "initial_set": {"max_angle_deg": q.max_angle_deg},
+    }
+    if q.inertia_tolerance is not None:
+        data["inertia_tolerance"] = q.inertia_tolerance
+    for name, value in (("max_rate", q.max_rate), ("max_weighted_rate", q.max_weighted_rate)):
+        if value is not None:
+            data["initial_set"][name] = value
+    return data
+
+
+def _witness(floor: Floor) -> dict[str, Any]:
+    return {
+        "coupling": Fraction(floor.bounds.coupling),
+        "greatest_inertia": floor.bounds.greatest,
+        "box": {"s": Fraction(floor.initial.s_high), "y": Fraction(floor.initial.y_high)},
+        "bins": [_bin(w) for w in floor.witnesses],
+    }
+
+
+def _bin(witness: Witness) -> dict[str, Any]:
+    i = witness.initial
+    entry: dict[str, Any] = {
+        "s": [Fraction(i.s_low), Fraction(i.s_high)],
+        "y": [Fraction(i.y_low), Fraction(i.y_high)],
+        "steps": _steps(witness.steps),
+    }
+    if witness.tail is not None:
+        ratio = max(witness.tail.ratios.values(), default=0.0)
+        entry["tail"] = {"ratio": Fraction(ratio), "steps": _steps(witness.tail.steps)}
+    return entry
+
+
+def _steps(steps: Iterable[Step]) -> list[dict[str, Any]]:
+    return [
+        {
+            "until": step.stop,
+            "forms": list(step.modes[:2]),  # what follows only says how the step was proposed
+            "bounds": {name: scaled_integers(c) for name, c in step.controls.items()},
+        }
+        for step in steps
+    ]
+
+
+def scaled_integers(values: Sequence[float]) -> list[int]:
+    """[e, n_0, n_1, ...] with values[i] = n_i 2^e exactly."""
+    parts = [frexp(v) for v in values]
+    exponents = [e - MANTISSA for m, e in parts if m != 0.0]
+    if not exponents:
+        return [0, *(0 for _ in values)]
+    e = min(exponents)
+    integers = [int(m * 2**MANTISSA) << max(x - MANTISSA - e, 0) for m, x in parts]
+    shift = min((n & -n).bit_length() - 1 for n in integers if n)
+    return [e + shift, *(n >> shift for n in integers)]

@@ -1,0 +1,347 @@
+"""Certify the floor of the filter state over an initial set: transient, tail, and bins.
+
+The answer is a list of witnesses, one a bin of the initial set, each true as it stands.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cached_property
+from heapq import heapify, heappop, heappush
+from itertools import count
+from math import ceil
+from typing import final
+
+from ...models.laws import AdaptiveScaling, Law, PersistenceFilter
+from ...models.schedule import Schedule
+from ..flow.stepping import CannotProceedError, ComparisonSystem, Stepper
+from .adaptive import AdaptiveSystem
+from .comparison import BodyBounds
+from .flowpipe import LawComparison, Witness
+from .persistence import PersistenceSystem
+from .sets import InitialSet
+from .tail import LARGEST_RATIO, Tail, find_tail
+
+NEAR_BLIND = 1.9
+"""Above this S = 1 - b0 (308 deg) a witness that got stuck is taken to have lost the error angle."""
+FADING = 8
+"""Periods are followed until lambda t reaches this, if need be."""
+WINDOW_BUDGET = 240
+"""Bins times windows of a table or a period."""
+
+
+LARGEST_PERIOD = 100
+"""Windows a period may have; of longer ones only this many are certified, and no tail is looked for."""
+
+
+@final
+@dataclass(frozen=True)
+class FloorOptions:
+    """How hard to try.
+
+    Attributes
+    ----------
+    degree : degree of the witness's polynomials
+    slack : relative slack of the inequalities, traded against the number of steps
+    max_bins : bins of the initial set (only the adaptive law needs more than one)
+    max_periods : periods after which no tail is looked for any more; up to ten times as many where
+        lambda times the period is small
+    settling_moves : how often the bin that settles last is refined (see `sooner`)
+    """
+
+    degree: int = 9
+    slack: float = 2e-4
+    max_bins: int = 24
+    max_periods: int = 40
+    settling_moves: int = 12
+
+    def __post_init__(self) -> None:
+        if not 2 <= self.degree <= 12:
+            raise ValueError(f"degree must lie between 2 and 12, received {self.degree}")
+        if not 0 < self.slack < 0.1:
+            raise ValueError(f"slack must lie between 0 and 0.1, received {self.slack}")
+        if self.max_bins < 1 or self.max_periods < 1 or self.settling_moves < 0:
+            raise ValueError("max_bins and max_periods must be at least 1, settling_moves at least 0")
+
+
+@final
+@dataclass(frozen=True)
+class Floor:
+    """A certified floor of R and everything that follows from its witnesses.
+
+    Attributes
+    ----------
+    law, bounds, schedule, initial : what it speaks about
+    witnesses : one a bin; together they cover `initial`
+    horizon : end of the time covered, s, or None for all time
+    """
+
+    law: Law
+    bounds: BodyBounds
+    schedule: Schedule
+    initial: InitialSet
+    witnesses: tuple[Witness, ...]
+    horizon: Fraction | None
+
+    @cached_property
+    def value(self) -> float:
+        """R >= value, s, over the time covered, for every trajectory from the initial set."""
+        return min(w.floor for w in self.witnesses)
+
+    @property
+    def steps(self) -> int:
+        """Number of proved steps."""
+        return sum(sum(1 for _ in w.all_steps()) for w in self.witnesses)
+
+    @property
+    def lost_angle(self) -> bool:
+        """Whether it got stuck because a bound of the error angle reached 2 pi."""
+        lost = [w for w in self.witnesses if w.stuck is not None]
+        gaps = [w.boxes[-1].cosine_gap if w.steps else w.initial.s_high**2 for w in lost]
+        return max(gaps, default=0.0) > NEAR_BLIND
+
+    @property
+    def stuck(self) -> Fraction | None:
+        """Earliest instant from which nothing could be proved, s, or None."""
+        return min((w.stuck for w in self.witnesses if w.stuck is not None), default=None)
+
+
+def comparison_system(law: Law, bounds: BodyBounds) -> LawComparison | None:
+    """Return the comparison system of a law, or None for laws that have none.
+
+    None too for parameters the inequalities do not cover: lambda, R(0) or a <= 0, gamma or k(0) < 0.
+    """
+    given, c = law.parameters, bounds.coupling
+    if any(given.get(name, 0) <= 0 for name in ("lambda", "R0")):
+        return None
+    if isinstance(law, PersistenceFilter):
+        return PersistenceSystem(decay=given["lambda"], initial_filter=given["R0"], coupling=c)
+    if isinstance(law, AdaptiveScaling):
+        if given["a"] <= 0 or given["gamma"] < 0 or given["k0"] < 0:
+            return None
+        return AdaptiveSystem(
+            decay=given["lambda"],
+            initial_filter=given["R0"],
+            learning_rate=given["gamma"],
+            initial_gain=given["k0"],
+            weight=given["a"],
+            coupling=c,
+        )
+    return None
+
+
+def certify_floor(
+    law: Law,
+    bounds: BodyBounds,
+    schedule: Schedule,
+    initial: InitialSet,
+    *,
+    horizon: Fraction | None = None,
+    options: FloorOptions | None = None,
+) -> Floor | None:
+    """Certify R >= value > 0 over the initial set, or return None for a law without comparison system.
+
+    Parameters
+    ----------
+    horizon : Fraction or None
+        End of the time asked for, s; None asks for all time (periodic schedules only). A
+        periodic schedule is also certified for all time where a tail is found.
+
+    Returns
+    -------
+    Floor
+        Its `stuck` tells where nothing could be proved any more, if anywhere; its `horizon`, how
+        far the certificate reaches.
+
+    Raises
+    ------
+    ValueError
+        If g jumps: the laws use g', and Omega = w + 2 g^2 kappa bv would jump with g.
+    """
+    jump = _first_jump(schedule)
+    if jump is not None:
+        raise ValueError(f"g jumps at {float(jump):g} s: no floor of R can be certified")
+    options = options or FloorOptions()
+    system = comparison_system(law, bounds)
+    if system is None:
+        return None
+    if horizon is None and schedule.period is None:
+        horizon = schedule.end
+    run = FloorProof(system, schedule, horizon, options)
+    if isinstance(system, PersistenceSystem):
+        witnesses: tuple[Witness, ...] = (run.complete(Witness(system, initial, ())),)
+    else:
+        witnesses = run.binned(initial, bounds)
+    ends = [w.stuck if w.stuck is not None else w.end for w in witnesses if w.tail is None]
+    reached = min(ends, default=None)
+    return Floor(law, bounds, schedule, initial, witnesses, reached)
+
+
+def _first_jump(schedule: Schedule) -> Fraction | None:
+    """Instant at which g jumps, to zero at the end of a table too; None if it is continuous."""
+    shapes, zero = schedule.profile.shapes, Fraction(0)
+    ends = {shape: sum(shape, zero) for shape in dict.fromkeys(shapes)}
+    after = (*shapes[1:], shapes[0] if schedule.is_periodic else ())
+    for shape, following, knot in zip(shapes, after, schedule.profile.knots[1:], strict=True):
+        if ends[shape] != (following[0] if following else zero):
+            return knot
+    return None
+
+
+@final
+@dataclass(frozen=True)
+class FloorProof:
+    """How witnesses are made for one system and schedule; step sizes carry over from one to the next."""
+
+    system: LawComparison
+    schedule: Schedule
+    horizon: Fraction | None
+    options: FloorOptions
+
+    _known: list[Stepper] = field(default_factory=list)
+
+    def _stepper(self, system: ComparisonSystem | None = None) -> Stepper:
+        """Return a stepper that starts from the step sizes the last one of the main system found."""
+        stepper = Stepper(system or self.system, degree=self.options.degree, slack=self.options.slack)
+        if self._known:
+            stepper.remember(self._known[-1])
+        if system is None:
+            self._known[:] = [stepper]
+        return stepper
+
+    def complete(self, early: Witness, not_before: Fraction = Fraction(0)) -> Witness:
+        """Go on from an early witness to the horizon, or to a tail as soon as that costs nothing.
+
+        `not_before` is the earliest start of the tail, s: a later one decays faster.
+        """
+        if early.stuck is not None:
+            return early
+        steps, least = list(early.steps), early.floor
+        period, stepper = self.schedule.period, self._stepper()
+        for start, stop in self._spans(early.end):
+            state = steps[-1].end_state() if steps else None
+            values = self.system.start(early.initial) if state is None else tuple(state.values())
+            try:
+                steps += stepper.run(self.schedule, start, stop, values)
+            except CannotProceedError as stuck:
+                return Witness(self.system, early.initial, (*steps, *stuck.steps), stuck=stuck.time)
+            if period is None or stop % period != 0 or stop < not_before:
+                continue
+            least = min(least, *(min(s.controls["r"]) for s in steps if s.start >= start))
+            state = steps[-1].end_state()
+            before = next((s.end_state() for s in steps if s.stop == stop - period), None)
+            tail = self._tail(stop, state, before) if before is not None else None
+            if tail is not None:
+                lowest = min(min(s.controls["r"]) for s in tail.steps)
+                if lowest >= 0.999 * least or stop >= self._max_periods * period:
+                    return Witness(self.system, early.initial, tuple(steps), tail)
+        return Witness(self.system, early.initial, tuple(steps))
+
+    def _tail(self, start: Fraction, state: Mapping[str, float], before: Mapping[str, float]) -> Tail | None:
+        """Look for a tail if the last period already shrank what must shrink; `before` is its start."""
+        system, first = self.system.tail(tuple(state.values()))
+        names = [name for group in system.decaying for name in group]
+        if any(state[name] > LARGEST_RATIO * before[name] for name in names):
+            return None
+        return find_tail(system, self.schedule, start, first, self._stepper(system))
+
+    def _spans(self, start: Fraction) -> list[tuple[Fraction, Fraction]]:
+        """From `start` on: to the end of each period, or at once to a finite schedule's horizon."""
+        period = self.schedule.period
+        if period is None:
+            assert self.horizon is not None
+            return [(start, self.horizon)] if start < self.horizon else []
+        if len(self.schedule.windows) > LARGEST_PERIOD:
+            stop = self.schedule.windows[LARGEST_PERIOD].on
+            return [(start, stop)] if start < stop else []
+        first = start // period + 1
+        ends = [n * period for n in range(first, max(first, self._max_periods) + 1)]
+        return list(zip([start, *ends[:-1]], ends, strict=True))
+
+    def early(self, initial: InitialSet, stop: Fraction) -> Witness:
+        """Return a witness over [0, stop]."""
+        try:
+            steps = self._stepper().run(self.schedule, Fraction(0), stop, self.system.start(initial))
+        except CannotProceedError as stuck:
+            return Witness(self.system, initial, stuck.steps, stuck=stuck.time)
+        return Witness(self.system, initial, tuple(steps))
+
+    def binned(self, initial: InitialSet, bounds: BodyBounds) -> tuple[Witness, ...]:
+        """Halve the worst bin again and again: most by the floor of the first windows, then by all."""
+        stop = self.early_end
+        weight = self.weight(bounds)
+        most = 1 + 3 * (self._max_bins - 1) // 4
+        first = self._halve([self.early(initial, stop)], weight, most, lambda b: self.early(b, stop))
+        return tuple(
+            self._halve(
+                [self.complete(w) for w in first],
+                weight,
+                self._max_bins,
+                lambda b: self.complete(self.early(b, stop)),
+            )
+        )
+
+    @property
+    def _max_periods(self) -> int:
+        """Periods enough for the rate's push to fade: s may grow for some 2/lambda before it shrinks."""
+        assert self.schedule.period is not None
+        asked, loss = self.options.max_periods, self.system.decay * self.schedule.period
+        return max(asked, min(10 * asked, ceil(FADING / loss)))
+
+    @property
+    def _max_bins(self) -> int:
+        """Bins, fewer for long tables: the work is bins times windows."""
+        windows = min(len(self.schedule.windows), LARGEST_PERIOD)
+        if self.schedule.period is None and self.horizon is not None:
+            windows = sum(1 for _ in self.schedule.windows_between(Fraction(0), self.horizon))
+        return max(1, min(self.options.max_bins, WINDOW_BUDGET // max(windows, 1)))
+
+    @staticmethod
+    def _halve(
+        witnesses: list[Witness], weight: float, most: int, prove: Callable[[InitialSet], Witness]
+    ) -> list[Witness]:
+        order = count()
+        heap = [(_merit(w), next(order), w) for w in witnesses]
+        heapify(heap)
+        while len(heap) < most:
+            halves = halved(heap[0][2].initial, weight)
+            if len(halves) == 1:
+                break
+            heappop(heap)
+            for half in halves:
+                witness = prove(half)
+                heappush(heap, (_merit(witness), next(order), witness))
+        return [w for _, _, w in sorted(heap)]
+
+    def weight(self, bounds: BodyBounds) -> float:
+        """Width of the angle that a width of the rate counts for when a bin is halved."""
+        return bounds.coupling * float(self.early_end) / 4
+
+    @cached_property
+    def early_end(self) -> Fraction:
+        """End of the third window's rise: the least R is mostly seen by then."""
+        span = self.schedule.end * (1 if self.schedule.period is None else 4)
+        openings = [w.on for w in self.schedule.support_between(Fraction(0), span)][:3]
+        rise = next(p for p in self.schedule.pieces_between(openings[-1], span) if p.start == openings[-1])
+        return rise.end if self.horizon is None else min(rise.end, self.horizon)
+
+
+def _merit(witness: Witness) -> float:
+    """Floor of an early witness; where it got stuck, the earlier the worse."""
+    return witness.floor if witness.stuck is None else float(witness.stuck) * 1e-9
+
+
+def halved(initial: InitialSet, weight: float) -> list[InitialSet]:
+    """Two halves across the wider of the angle and `weight` times the rate; one if it is a point."""
+    ds, dy = initial.s_high - initial.s_low, initial.y_high - initial.y_low
+    if max(ds, weight * dy) < 1e-6:
+        return [initial]
+    if ds >= weight * dy:
+        middle = (initial.s_low + initial.s_high) / 2
+        edges = [(initial.s_low, middle), (middle, initial.s_high)]
+        return [InitialSet(a, b, initial.y_low, initial.y_high, initial.description) for a, b in edges]
+    middle = (initial.y_low + initial.y_high) / 2
+    edges = [(initial.y_low, middle), (middle, initial.y_high)]
+    return [InitialSet(initial.s_low, initial.s_high, a, b, initial.description) for a, b in edges]

@@ -1,0 +1,176 @@
+"""Convergence of attitude and rate, for every start in an initial set and any lambda > 0.
+
+Both laws contract |Omega|_J by exp(-m/2), m = integral of g^2 kappa (1 + b0), and the attitude
+follows in cascade. Certified witnesses with a repeating tail carry this out: over every period
+after the tail's start s = sqrt(1 - b0) and |Omega|_J shrink by a proved ratio. For the
+persistence filter the closed form of the same argument is
+
+    sqrt(1 - b0(t)) <= sqrt(R(0)/R_min) exp(-lambda t/2) (s0 + c t y0),   c = 1/sqrt(8 Jmin).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from math import ceil, inf, log, nextafter
+from typing import final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...models.schedule import Schedule
+from ..exact.balls import sqrt_below
+from .certify import Floor
+from .flowpipe import Box, Witness
+from .torque_bound import OUTWARD, greatest_bv
+
+Array = NDArray[np.float64]
+
+
+@final
+@dataclass(frozen=True)
+class Reach:
+    """Bounds of |bv| and |w| on one box, and its place in time.
+
+    `scale` is the ratio per period by which both shrink if the box belongs to a tail, else None.
+    """
+
+    start: float
+    stop: float
+    attitude: float
+    rate: float
+    scale: float | None
+
+
+@final
+@dataclass(frozen=True)
+class Convergence:
+    """What a certified floor says of convergence.
+
+    Attributes
+    ----------
+    converges : every trajectory's attitude error and rate go to zero
+    ratio : ratio by which s and |Omega|_J shrink over each period of the slowest tail
+    envelope_start : time from which that holds, s
+    settling : proved time after which |bv| and |w| stay within the tolerances, s, or None
+    largest_angle : bound of 2 acos(b0), rad
+    largest_rate : bound of |w|, rad/s
+    """
+
+    converges: bool
+    ratio: float
+    envelope_start: Fraction
+    settling: float | None
+    largest_angle: float
+    largest_rate: float
+
+
+def analyse_convergence(floor: Floor, *, attitude: float, rate: float) -> Convergence:
+    """Draw the consequences of a floor for attitude and rate.
+
+    Parameters
+    ----------
+    attitude, rate : tolerances on |bv| and on |w|, rad/s
+    """
+    reaches = [list(_reaches(floor, w)) for w in floor.witnesses]
+    gaps = max(b.cosine_gap for w in floor.witnesses for b in (*w.boxes, *w.tail_boxes))
+    tails = [w.tail for w in floor.witnesses]
+    complete = [t for t in tails if t is not None]
+    converges = len(complete) == len(tails)
+    times = [_settled(r, floor.schedule, floor.horizon, attitude, rate) for r in reaches]
+    return Convergence(
+        converges=converges,
+        ratio=max((max(t.ratios.values(), default=0.0) for t in complete), default=1.0),
+        envelope_start=max((t.start for t in complete), default=Fraction(0)),
+        settling=None if any(t is None for t in times) else max(t for t in times if t is not None),
+        largest_angle=_angle(gaps),
+        largest_rate=max(r.rate for row in reaches for r in row),
+    )
+
+
+def settling(witness: Witness, floor: Floor, *, attitude: float, rate: float) -> float:
+    """Time after which one bin of a floor for all time is within the tolerances, s; inf where unknown."""
+    found = _settled(list(_reaches(floor, witness)), floor.schedule, None, attitude, rate)
+    return inf if found is None or witness.tail is None else found
+
+
+def _angle(gap: float) -> float:
+    """Bound of 2 acos(b0), rad, for 1 - b0 <= gap: 4 asin(sqrt(gap/2)), exact where gap is small."""
+    return float(4 * np.arcsin(min(np.sqrt(gap / 2) * OUTWARD, 1.0)) * OUTWARD)
+
+
+def _reaches(floor: Floor, witness: Witness) -> Iterator[Reach]:
+    root = sqrt_below(floor.bounds.least)
+    scale = max(witness.tail.ratios.values(), default=0.0) if witness.tail is not None else None
+    for box in witness.boxes:
+        yield _reach(box, root, None)
+    for box in witness.tail_boxes:
+        yield _reach(box, root, scale)
+
+
+def _reach(box: Box, root: float, scale: float | None) -> Reach:
+    # sqrt(2 S) >= |bv| shrinks in proportion to s; sqrt(S (2 - S)) is sharper for a single box
+    if scale is None:
+        n = float(greatest_bv(np.array(box.cosine_gap)))
+    else:
+        n = float(np.sqrt(2 * box.cosine_gap)) * OUTWARD
+    rate = (box.weighted_rate / root + 2 * box.gain_max**2 * box.gain_high * n) * OUTWARD
+    return Reach(box.start, box.stop, n, rate, scale)
+
+
+def _settled(
+    reaches: list[Reach], schedule: Schedule, horizon: Fraction | None, attitude: float, rate: float
+) -> float | None:
+    """Time after which every box is within the tolerances; None if the covered time ends outside."""
+    period = float(schedule.period) if schedule.period is not None else inf
+    last = 0.0
+    for reach in reaches:
+        excess = max(reach.attitude / attitude, reach.rate / rate) * OUTWARD
+        if excess <= 1:
+            continue
+        if reach.scale is None:
+            last = max(last, reach.stop)
+        elif reach.scale > 0:
+            periods = ceil(log(excess) / -log(reach.scale) * OUTWARD + 1e-9)
+            last = max(last, reach.stop + (periods - 1) * period)
+        else:
+            last = max(last, reach.stop)
+    if horizon is not None and last >= float(horizon) * (1 - 1e-12):
+        return None
+    return nextafter(last * OUTWARD, inf)
+
+
+def envelope(floor: Floor, times: Array) -> dict[str, Array]:
+    """Bounds at given times, for figures: error angle (rad), |w| (rad/s), least R (s).
+
+    Each time gets the worst of the boxes that hold it; beyond the covered time the values are NaN.
+    """
+    result = {name: np.full(times.shape, np.nan) for name in ("angle", "rate", "filter")}
+    root = sqrt_below(floor.bounds.least)
+    for witness in floor.witnesses:
+        for box, start, stop, scale in _unrolled(floor, witness, float(times.max(initial=0.0))):
+            inside = (times >= start) & (times <= stop)
+            if not inside.any():
+                continue
+            reach = _reach(box, root, None if scale == 1.0 else scale)
+            result["angle"][inside] = np.fmax(result["angle"][inside], _angle(box.cosine_gap * scale**2))
+            result["rate"][inside] = np.fmax(result["rate"][inside], reach.rate * scale)
+            result["filter"][inside] = np.fmin(result["filter"][inside], box.filter_low)
+    if floor.horizon is not None:  # beyond it some of the witnesses are silent
+        for values in result.values():
+            values[times > float(floor.horizon)] = np.nan
+    return result
+
+
+def _unrolled(floor: Floor, witness: Witness, end: float) -> Iterator[tuple[Box, float, float, float]]:
+    for box in witness.boxes:
+        yield box, box.start, box.stop, 1.0
+    if witness.tail is None or floor.schedule.period is None:
+        return
+    period, ratio = float(floor.schedule.period), max(witness.tail.ratios.values(), default=0.0)
+    n = 0
+    while float(witness.tail.start) + n * period <= end:
+        for box in witness.tail_boxes:
+            yield box, box.start + n * period, box.stop + n * period, ratio**n
+        n += 1

@@ -1,0 +1,188 @@
+"""A proved witness of one initial set, and the boxes read off it."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache, cached_property, lru_cache
+from itertools import chain
+from math import comb, inf
+from typing import final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...models.schedule import polynomial as poly
+from ..exact.balls import fraction_above, fraction_below
+from ..exact.bernstein import lower_bound
+from ..flow.stepping import Step
+from .sets import InitialSet
+from .tail import PeriodicSystem, Tail
+
+Array = NDArray[np.float64]
+PARTS = 8
+"""Equal parts of a step, each of which gets its own box."""
+ROUNDING = 1e-14
+"""Relative allowance for the rounding of a convex combination of fewer than 20 floats (2e-15)."""
+
+
+@final
+@dataclass(frozen=True)
+class Box:
+    """Bounds that hold at every t in [start, stop] for every trajectory of the initial set.
+
+    Attributes
+    ----------
+    start, stop : time, s
+    cosine_gap : upper bound of S = 1 - b0; it may exceed 2 in a tail, where it is scaled down
+    weighted_rate : upper bound of y = |Omega|_J, sqrt(kg m^2) rad/s
+    filter_low, filter_high : bounds of R, s
+    gain_low, gain_high : bounds of kappa, 1/s
+    gain_max : bound of |g| in the interval
+    slope_low, slope_high : bounds of g' in the interval, 1/s
+    """
+
+    start: float
+    stop: float
+    cosine_gap: float
+    weighted_rate: float
+    filter_low: float
+    filter_high: float
+    gain_low: float
+    gain_high: float
+    gain_max: float
+    slope_low: float
+    slope_high: float
+
+
+class LawComparison(PeriodicSystem):
+    """A comparison system of one law, with the names of what it bounds."""
+
+    floor_component = "r"
+    decay: Fraction
+    """lambda, 1/s."""
+
+    @abstractmethod
+    def start(self, initial: InitialSet) -> tuple[float, ...]:
+        """Values at t = 0, on the safe side of the initial set."""
+
+    @abstractmethod
+    def tail(self, state: Sequence[float]) -> tuple[PeriodicSystem, tuple[float, ...]]:
+        """Return the system and the starting values to try for a periodic tail from this state."""
+
+    @abstractmethod
+    def bounds(self, low: dict[str, Array], high: dict[str, Array]) -> dict[str, Array]:
+        """Box fields from least and greatest values of the components; in the tail too."""
+
+
+@final
+@dataclass(frozen=True)
+class Witness:
+    """Proved bounds of every trajectory that starts in `initial`.
+
+    Attributes
+    ----------
+    steps : proved steps from t = 0
+    tail : repeating steps from the end of `steps` on, or None
+    stuck : instant from which nothing could be proved, s, or None
+    """
+
+    system: LawComparison
+    initial: InitialSet
+    steps: tuple[Step, ...]
+    tail: Tail | None = None
+    stuck: Fraction | None = None
+
+    @cached_property
+    def floor(self) -> float:
+        """A proved lower bound of R over the time covered, s."""
+        least = Fraction(10**9)
+        everything = [s.controls[self.system.floor_component] for s in self.all_steps()]
+        for controls in sorted(everything, key=min):
+            if min(controls) >= least:
+                break
+            least = min(least, lower_bound(controls, 5))
+        return fraction_below(least)
+
+    def all_steps(self) -> Iterator[Step]:
+        """Steps of the transient and of the tail's first period."""
+        return chain(self.steps, self.tail.steps if self.tail else ())
+
+    @property
+    def end(self) -> Fraction:
+        """End of the time covered by steps, s (a tail covers all later time)."""
+        return self.steps[-1].stop if self.steps else Fraction(0)
+
+    @cached_property
+    def boxes(self) -> tuple[Box, ...]:
+        """Boxes of the transient."""
+        return tuple(chain.from_iterable(step_boxes(self.system, s) for s in self.steps))
+
+    @cached_property
+    def tail_boxes(self) -> tuple[Box, ...]:
+        """Boxes of the tail's first period; they hold in every later period too.
+
+        Angle and rate may be scaled down from period to period, so that bounds which do not shrink
+        (of s and y, once s is given up) must not enter them.
+        """
+        if self.tail is None:
+            return ()
+        fixed = {**self.tail.limits, **dict.fromkeys(self.tail.given_up, inf)}
+        return tuple(chain.from_iterable(step_boxes(self.system, s, fixed) for s in self.tail.steps))
+
+
+@cache
+def _division(degree: int, parts: int) -> Array:
+    """(parts, degree + 1, degree + 1): Bernstein coefficients of each of the equal parts."""
+    blocks = []
+    for i in range(parts):
+        a, b = i / parts, (i + 1) / parts
+        rows = []
+        for k in range(degree + 1):  # blossom at (a^(n-k), b^k)
+            weights = np.zeros(degree + 1)
+            for p in range(degree - k + 1):
+                for q in range(k + 1):
+                    weights[p + q] += (
+                        comb(degree - k, p) * a**p * (1 - a) ** (degree - k - p)
+                        * comb(k, q) * b**q * (1 - b) ** (k - q)
+                    )  # fmt: skip
+            rows.append(weights)
+        blocks.append(rows)
+    return np.array(blocks)
+
+
+def step_boxes(
+    system: LawComparison, step: Step, fixed: Mapping[str, float] | None = None, parts: int = PARTS
+) -> Iterator[Box]:
+    """Boxes of the equal parts of one step; `fixed` overrides upper bounds of components."""
+    low, high = {}, {}
+    for name, controls in step.controls.items():
+        values = _division(len(controls) - 1, parts) @ np.array(controls)
+        allowance = ROUNDING * max(abs(c) for c in controls)
+        low[name], high[name] = values.min(axis=1) - allowance, values.max(axis=1) + allowance
+    for name, value in (fixed or {}).items():
+        high[name] = np.full(parts, value)
+    fields = system.bounds(low, high)
+    shared = _gain_extremes(step.shape, step.part, step.length, parts)
+    times = [float(step.start + step.length * Fraction(i, parts)) for i in range(parts + 1)]
+    for i in range(parts):
+        row = {name: float(values[i]) for name, values in fields.items()}
+        gain, slope_low, slope_high = shared[i]
+        yield Box(times[i], times[i + 1], gain_max=gain, slope_low=slope_low, slope_high=slope_high, **row)
+
+
+@lru_cache(maxsize=65536)
+def _gain_extremes(
+    shape: poly.Coefficients, part: tuple[int, int], length: Fraction, parts: int
+) -> tuple[tuple[float, float, float], ...]:
+    """Greatest g, least and greatest g' on the equal parts of a step, rounded outwards."""
+    j, n = part
+    found = []
+    for i in range(parts):
+        local = poly.compose_affine(shape, Fraction(j * parts + i, n * parts), Fraction(1, n * parts))
+        slope = poly.bernstein(poly.scale(poly.derivative(local), parts / length))
+        gain = fraction_above(max(abs(c) for c in poly.bernstein(local)))
+        found.append((gain, fraction_below(min(slope)), fraction_above(max(slope))))
+    return tuple(found)

@@ -1,0 +1,72 @@
+"""Prove that the initial set settles sooner: refine the bin that settles last.
+
+Bins are chosen for the floor of R, and a bin's tail begins as soon as the floor allows. For the
+settling time both are coarse: over a wide bin k is known to learn only what its least start
+learns, and an early tail shrinks at the ratio of its first period, in which the rate still feeds
+the angle. Two moves help, each again a proved witness: a later tail, or two halves of the bin.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from .certify import Floor, FloorOptions, FloorProof, comparison_system, halved
+from .convergence import settling
+from .flowpipe import Witness
+
+LATER = 3
+"""Periods by which a tail is moved at a time."""
+WORTH = 0.98
+"""A later tail must lower the bin's settling time to this share of it, or the bin is halved instead."""
+
+
+def settle_sooner(
+    floor: Floor, *, attitude: float, rate: float, options: FloorOptions | None = None
+) -> Floor:
+    """Return a floor of the same set, no lower, whose last bin settles no later.
+
+    Parameters
+    ----------
+    attitude, rate : tolerances on |bv| and on |w|, rad/s
+    """
+    options, period = options or FloorOptions(), floor.schedule.period
+    system = comparison_system(floor.law, floor.bounds)
+    if period is None or floor.horizon is not None or system is None or len(floor.witnesses) < 2:
+        return floor
+    proof = FloorProof(system, floor.schedule, None, options)
+
+    def time(witness: Witness) -> float:
+        return settling(witness, floor, attitude=attitude, rate=rate)
+
+    witnesses = list(floor.witnesses)
+    for _ in range(options.settling_moves):
+        worst = max(witnesses, key=time)
+        better = _later(proof, worst)
+        if not _is_proved(better, floor) or max(map(time, better)) > WORTH * time(worst):
+            better = _halves(proof, worst, floor)
+        if not _is_proved(better, floor) or max(map(time, better)) > time(worst):
+            break
+        witnesses = [w for w in witnesses if w is not worst] + better
+    return replace(floor, witnesses=tuple(witnesses))
+
+
+def _is_proved(witnesses: list[Witness], floor: Floor) -> bool:
+    """Whether there are any, all for all time, and none below the floor."""
+    return bool(witnesses) and all(w.tail is not None and w.floor >= floor.value for w in witnesses)
+
+
+def _later(proof: FloorProof, witness: Witness) -> list[Witness]:
+    """The same bin with its tail moved on."""
+    assert witness.tail is not None
+    assert proof.schedule.period is not None
+    start = witness.tail.start + LATER * proof.schedule.period
+    return [proof.complete(Witness(proof.system, witness.initial, witness.steps), start)]
+
+
+def _halves(proof: FloorProof, witness: Witness, floor: Floor) -> list[Witness]:
+    """Both halves of the bin, with tails no earlier than its own; none of a bin that is a point."""
+    assert witness.tail is not None
+    halves = halved(witness.initial, proof.weight(floor.bounds))
+    if len(halves) == 1:
+        return []
+    return [proof.complete(proof.early(half, proof.early_end), witness.tail.start) for half in halves]

@@ -1,0 +1,1 @@
+"""Stability of the linear plant through periodic windows."""
