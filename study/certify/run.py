@@ -11,7 +11,6 @@ from typing import Any, final
 from ...models.closed_loop import close_loop
 from ...models.laws import Law
 from ...scenario import Scenario
-from ...scenario.laws import USER
 from ...verify.certificates import Certificate, as_text, certificate_text
 from ...verify.certificates.excitation import excitation_certificate
 from ...verify.certificates.facts import fact_certificate, filter_start_certificate, windows_data
@@ -121,18 +120,21 @@ def _scenario_data(scenario: Scenario, transfers: Sequence[Mapping[str, Any]]) -
         law = choice.build()
         data = shared | question_data(floor_question(scenario, law, Seen(), search=False))
         data |= inertia_data(scenario.body.exact_inertia, scenario.inertia_tolerance)
-        data["parameters"] = law.parameters
+        data["parameters"] = _true_parameters(law)
         with suppress(NotAlgebraicError):  # such a law has no certificate that writes it out
             data["law"] = law_form(close_loop(law))
-        if choice.type == USER:
-            data["user_law"] = True
         yield data
+
+
+def _true_parameters(law: Law) -> dict[str, Any]:
+    """Parameters of a law; R0 and k0 only where the states they name do start there."""
+    starts = {f"{state.name}0": state.initial for state in law.controller_states}
+    return {name: value for name, value in law.parameters.items() if starts.get(name, value) == value}
 
 
 def _unequal(stated: Mapping[str, Any], expected: Mapping[str, Any]) -> Iterator[str]:
     """Names of the entries that the scenario does not confirm."""
-    own = expected.get("user_law", False)
-    text = as_text({key: value for key, value in expected.items() if key != "user_law"})
+    text = as_text(expected)
     bound_alone = stated.keys() == {"inertia", "transfer"}  # a bound speaks of the inertia as stated
     if (
         "inertia_tolerance" in text
@@ -143,7 +145,7 @@ def _unequal(stated: Mapping[str, Any], expected: Mapping[str, Any]) -> Iterator
         yield "inertia_tolerance (the scenario has one, the certificate none)"
     for key, value in stated.items():
         if key == "law":
-            if not _same_law(value, text["law"], by_name=not own):
+            if not _same_law(value, text["law"]):
                 yield "law"
         elif key == "transfer":
             if not any(_same(value, transfer) for transfer in text["transfers"]):
@@ -172,19 +174,18 @@ def _same(left: Any, right: Any) -> bool:
         return False
 
 
-def _same_law(left: Mapping[str, Any], right: Mapping[str, Any], *, by_name: bool) -> bool:
-    """Whether two laws are equal: the same words, or the same torque and rates as polynomials.
+def _same_law(stated: Mapping[str, Any], own: Mapping[str, Any]) -> bool:
+    """Whether the law of a certificate is the scenario's: the same torque and rates as polynomials.
 
-    A certificate may give a built-in law by its name alone; a user's law has to be written out.
+    Where a certificate gives a name alone it speaks of the checker's own equations of that name: the
+    scenario's law must have those, whatever it is called.
     """
-    from ...verify.checker import Invalid, Node, law_polynomials
+    from ...verify.checker import Invalid, Node, family_of, law_polynomials
 
-    if set(left) == {"name"}:
-        return by_name and left["name"] == right["name"]
-    if left == right:
-        return True
     try:
-        first, second = (law_polynomials(Node(law, "law")) for law in (left, right))
+        if set(stated) == {"name"}:
+            return family_of(Node(own, "law")) == stated["name"]
+        first, second = (law_polynomials(Node(law, "law")) for law in (stated, own))
     except (Invalid, LookupError):
         return False
     return first == second

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
 
+from ...models.closed_loop import close_loop
+from ...models.laws import Law
 from ...models.schedule import Schedule
 from ..verdict import Claim
 from .certificate import floor_certificate
@@ -14,6 +16,7 @@ from .claims import FloorFacts, convergence_claim, floor_claim, reaches_far_enou
 from .converged import ConvergedFilter, ConvergedFloor
 from .convergence import Convergence, analyse_convergence
 from .question import FloorQuestion
+from .recognise import follows_filter, recognise
 from .refine import settle_sooner
 from .torque_bound import TorqueBound, torque_bound
 from .worst_found import WorstFound, find_worst
@@ -54,7 +57,7 @@ def answer(question: FloorQuestion) -> FloorAnswer:
     if floor is not None:
         floor = settle_sooner(floor, **tolerances, options=q.options)
     decay = q.law.parameters.get("lambda")
-    has_filter = any(s.name == "R" for s in q.law.controller_states)
+    has_filter = follows_filter(close_loop(q.law))
     converged = None
     short = q.schedule.period is not None and len(q.schedule.windows) <= LARGEST_PERIOD
     if short and has_filter and decay is not None and decay > 0:
@@ -73,7 +76,7 @@ def answer(question: FloorQuestion) -> FloorAnswer:
     if floor is not None and reaches_far_enough(floor):
         certificate = floor_certificate(q, floor, convergence=found, torque=torque)
     facts = FloorFacts(
-        law_name=q.law.name,
+        no_system=_no_system(q.law) if floor is None else "",
         floor=floor,
         converged=converged,
         along_run=q.run_floor,
@@ -84,6 +87,14 @@ def answer(question: FloorQuestion) -> FloorAnswer:
     if q.torque_limit is not None:
         claims.append(torque_claim(facts, torque, q.torque_limit, q.torque_norm, q.run_peak))
     return FloorAnswer(tuple(claims), floor, converged, worst, torque, found)
+
+
+def _no_system(law: Law) -> str:
+    """Why a law has no comparison system."""
+    found = recognise(law)
+    return (
+        found.reason or f"law {law.name}: the comparison system needs lambda, R(0), a > 0, gamma, k(0) >= 0"
+    )
 
 
 def _search_horizon(schedule: Schedule) -> Fraction:

@@ -12,6 +12,7 @@ from ..certificates.schedule import schedule_data
 from ..flow.stepping import Step
 from .certify import Floor
 from .flowpipe import Witness
+from .recognise import recognise
 
 if TYPE_CHECKING:
     from .convergence import Convergence
@@ -56,11 +57,14 @@ def floor_certificate(
 
 
 def question_data(question: FloorQuestion) -> dict[str, Any]:
-    """What a floor's claims speak about: body, law by name, schedule and initial set."""
+    """What a floor's claims speak about: body, law, schedule and initial set.
+
+    The law is written out as its program; a law without a comparison system has its name only.
+    """
     q = question
     data: dict[str, Any] = {
         "inertia": q.body.exact_inertia,
-        "law": {"name": q.law.name},
+        "law": recognise(q.law).form or {"name": q.law.name},
         "parameters": {n: v for n, v in q.law.parameters.items() if n in LAW_PARAMETERS},
         "schedule": schedule_data(q.schedule),
         "initial_set": {"max_angle_deg": q.max_angle_deg},

@@ -14,13 +14,14 @@ from itertools import count
 from math import ceil
 from typing import final
 
-from ...models.laws import AdaptiveScaling, Law, PersistenceFilter
+from ...models.laws import Law
 from ...models.schedule import Schedule
 from ..flow.stepping import CannotProceedError, ComparisonSystem, Stepper
 from .adaptive import AdaptiveSystem
 from .comparison import BodyBounds
 from .flowpipe import LawComparison, Witness
 from .persistence import PersistenceSystem
+from .recognise import recognise
 from .sets import InitialSet
 from .tail import LARGEST_RATIO, Tail, find_tail
 
@@ -109,16 +110,17 @@ class Floor:
 
 
 def comparison_system(law: Law, bounds: BodyBounds) -> LawComparison | None:
-    """Return the comparison system of a law, or None for laws that have none.
+    """Return the comparison system of a law, or None for laws that have none (see `recognise`).
 
     None too for parameters the inequalities do not cover: lambda, R(0) or a <= 0, gamma or k(0) < 0.
     """
     given, c = law.parameters, bounds.coupling
     if any(given.get(name, 0) <= 0 for name in ("lambda", "R0")):
         return None
-    if isinstance(law, PersistenceFilter):
+    kind = recognise(law).kind
+    if kind == "persistence-filter":
         return PersistenceSystem(decay=given["lambda"], initial_filter=given["R0"], coupling=c)
-    if isinstance(law, AdaptiveScaling):
+    if kind == "adaptive-scaling":
         if given["a"] <= 0 or given["gamma"] < 0 or given["k0"] < 0:
             return None
         return AdaptiveSystem(

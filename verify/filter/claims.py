@@ -20,6 +20,9 @@ from .torque_bound import TorqueBound
 from .worst_found import WorstFound
 
 PAGE = "docs/theory-floor.md"
+NO_PROOF_STEP = (
+    "the simulated run shows what this law does from one start; nothing is proved of it for the set"
+)
 MUELLER = "comparison theorem of Mueller and Walter; docs/theory-floor.md"
 
 
@@ -30,7 +33,7 @@ class FloorFacts:
 
     Attributes
     ----------
-    law_name : the law's name, for messages
+    no_system : why the law has no comparison system, in words; empty if it has one
     floor : certified floor; None if the law has no comparison system
     converged : for periodic schedules
     along_run : least R of the scenario's own run, s, and its horizon, s
@@ -38,7 +41,7 @@ class FloorFacts:
     certificate : the floor written out for the stand-alone checker
     """
 
-    law_name: str
+    no_system: str
     floor: Floor | None
     converged: ConvergedFloor | None = None
     along_run: tuple[float, float] | None = None
@@ -55,8 +58,8 @@ def floor_claim(facts: FloorFacts) -> Claim:
             "filter.floor",
             title,
             "R(t) >= R_min > 0",
-            _no_system(facts.law_name),
-            "use persistence-filter or adaptive-scaling, or give the law its own certificate",
+            facts.no_system,
+            NO_PROOF_STEP,
             quantities,
         )
     asked = "for all t >= 0" if floor.schedule.period is not None else "over the table"
@@ -96,8 +99,8 @@ def convergence_claim(facts: FloorFacts, found: Convergence | None, attitude: fl
             "convergence",
             title,
             general,
-            _no_system(facts.law_name),
-            "use persistence-filter or adaptive-scaling, or give the law its own certificate",
+            facts.no_system,
+            NO_PROOF_STEP,
         )
     quantities = _reach_quantities(floor, found)
     if floor.schedule.period is None:
@@ -149,9 +152,7 @@ def torque_claim(
     floor = facts.floor
     statement = f"|g u| <= {float(limit):g} N m ({norm})"
     if floor is None or bound is None:
-        return _undecided(
-            "torque.limit", title, statement, _no_system(facts.law_name), "simulate; no bound is proved"
-        )
+        return _undecided("torque.limit", title, statement, facts.no_system, NO_PROOF_STEP)
     where = f"from every start with {floor.initial.description}"
     quantities = torque_quantities(bound)
     if not reaches_far_enough(floor):
@@ -291,10 +292,6 @@ def _shortfall(floor: Floor) -> tuple[str, str]:
         f"R >= {_down(floor.value)} s is certified on [0, {end:g}] s only: no repeating bound was found",
         "allow more periods, or narrow the initial set",
     )
-
-
-def _no_system(law_name: str) -> str:
-    return f"no comparison system is known for the law {law_name}"
 
 
 def _undecided(

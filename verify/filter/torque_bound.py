@@ -21,10 +21,11 @@ from typing import final
 import numpy as np
 from numpy.typing import NDArray
 
-from ...models.laws import AdaptiveScaling, PersistenceFilter
+from ...models.laws import Law
 from ..exact.balls import fraction_above, fraction_below, sqrt_above, sqrt_below
 from .certify import Floor
 from .flowpipe import Box
+from .recognise import recognise
 
 Array = NDArray[np.float64]
 OUTWARD = 1 + 1e-12
@@ -110,20 +111,21 @@ def torque_bound(floor: Floor) -> TorqueBound:
     )
 
 
-def _coefficient(law: object, c: _Columns) -> tuple[Array, Array]:
+def _coefficient(law: Law, c: _Columns) -> tuple[Array, Array]:
     """Bounds of q; each term's interval, added, then widened by its rounding."""
     g, low, high = c.g, c.low, c.high
     slope = [-4 * s * k for s in (c.slope_low, c.slope_high) for k in (low, high)]
     b0_low = 1.0 - np.minimum(c.S, 2.0)
     square = 2 * g**3 * high**2
     terms = [(np.minimum.reduce(slope), np.maximum.reduce(slope))]
-    if isinstance(law, PersistenceFilter):
-        lam = fraction_above(law.lambda_)
+    kind, given = recognise(law).kind, law.parameters
+    if kind == "persistence-filter":
+        lam = fraction_above(given["lambda"])
         # -2 g kappa' + 2 g^3 kappa^2 b0 = -2 g lambda kappa + 2 g^3 kappa^2 (1 + 2 b0)
         terms.append((-2 * g * lam * high, np.zeros_like(g)))
         terms.append((np.minimum(square * (1 + 2 * b0_low), 0.0), 3 * square))
-    elif isinstance(law, AdaptiveScaling):
-        gamma, a = fraction_above(law.gamma), fraction_above(law.a)
+    elif kind == "adaptive-scaling":
+        gamma, a = fraction_above(given["gamma"]), fraction_above(given["a"])
         intake = np.minimum(2 * (c.y**2 + 2 * a * c.S), 2 * a * (1 + c.y**2 / (4 * a)) ** 2)
         terms.append((-2 * g**3 * gamma * c.R * intake, np.zeros_like(g)))
         terms.append((np.minimum(square * b0_low, 0.0), square))

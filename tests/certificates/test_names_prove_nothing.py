@@ -1,0 +1,198 @@
+"""A law is its equations: neither class nor name proves anything, and the labels of a file are checked."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction as F
+from typing import Any
+
+import casadi as ca
+import pytest
+from intermit.models.closed_loop import close_loop
+from intermit.models.laws import AdaptiveScaling, Control, ControllerState, PersistenceFilter
+from intermit.study.certify.run import _same_law
+from intermit.verify import checker
+from intermit.verify.certificates import certificate_text
+from intermit.verify.filter.certify import comparison_system
+from intermit.verify.filter.comparison import BodyBounds
+from intermit.verify.filter.recognise import recognise
+from intermit.verify.lyapunov import candidate, certificates_of, derivative_claim
+from problems import ADAPTIVE, J1, PERSISTENCE
+
+# The built-in laws are final for type checkers; at run time a user may still derive from them.
+Base: Any = PersistenceFilter
+Adaptive: Any = AdaptiveScaling
+
+
+def changed(control: Control, **changes: Any) -> Control:
+    parts = {name: getattr(control, name) for name in ("torque", "state_rates", "gain", "gain_rate")}
+    return Control(**(parts | changes))
+
+
+class NoTorque(Base):
+    def control(self, *arguments):
+        control = super().control(*arguments)
+        return changed(control, torque=0 * control.torque)
+
+
+class Clipped(Base):
+    def control(self, *arguments):
+        control = super().control(*arguments)
+        return changed(control, torque=ca.fmin(ca.fmax(control.torque, -1), 1))
+
+
+class SlightlyMore(Base):
+    def control(self, plant, *arguments):
+        control = super().control(plant, *arguments)
+        return changed(control, torque=control.torque - F(1, 10**9).__float__() * plant.w)
+
+
+class OtherFilter(Base):
+    def control(self, plant, time, states, parameters):
+        control = super().control(plant, time, states, parameters)
+        return changed(control, state_rates={"R": control.state_rates["R"] - states["R"]})
+
+
+class OtherStart(Base):
+    @property
+    def controller_states(self):
+        return (ControllerState("R", 2 * self.R0, "s"),)
+
+
+class LambdaInside(Base):
+    """The equations use a number where the parameter should stand."""
+
+    def control(self, plant, time, states, parameters):
+        return super().control(plant, time, states, {**parameters, "lambda": ca.SX(float(self.lambda_) / 2)})
+
+
+class OtherParameters(Base):
+    """What it says of its parameters has other names than what it computes with."""
+
+    @property
+    def parameters(self) -> Mapping[str, F]:
+        return {"lambda_": self.lambda_, "R0": self.R0}
+
+    def control(self, plant, time, states, parameters):
+        return super().control(plant, time, states, {"lambda": parameters["lambda_"], "R0": parameters["R0"]})
+
+
+class Resets(Base):
+    def reset_instants(self, schedule, start, stop):
+        return (start,)
+
+    def reset(self, plant, states, parameters):
+        return {"R": states["R"] / 2}
+
+
+class NoLearning(Adaptive):
+    def control(self, *arguments):
+        control = super().control(*arguments)
+        return changed(control, state_rates={**control.state_rates, "k": 0 * control.torque[0]})
+
+
+class SignOfTheTerm(Adaptive):
+    def attitude_term(self, plant, parameters):
+        return -super().attitude_term(plant, parameters)
+
+
+class SameEquations(Base):
+    """Another class, another order of terms, the same polynomials."""
+
+    name = "of my own"
+
+    def control(self, *arguments):
+        control = super().control(*arguments)
+        return changed(control, torque=-(-control.torque / 2 - control.torque / 2))
+
+
+WRONG = (NoTorque, Clipped, SlightlyMore, OtherFilter, OtherStart, LambdaInside, OtherParameters, Resets)
+
+
+def filter_law(kind):
+    return kind(lambda_=PERSISTENCE.lambda_, R0=PERSISTENCE.R0)
+
+
+@pytest.mark.parametrize("kind", WRONG)
+def test_a_subclass_with_other_equations_loses_the_proof(kind):
+    law = filter_law(kind)
+    assert comparison_system(law, BodyBounds.of(J1)) is None
+    assert kind.__name__ in recognise(law).reason
+
+
+@pytest.mark.parametrize("kind", [NoLearning, SignOfTheTerm])
+def test_an_adaptive_subclass_with_another_update_loses_the_proof(kind):
+    law = kind(ADAPTIVE.lambda_, ADAPTIVE.gamma, ADAPTIVE.R0, ADAPTIVE.k0, ADAPTIVE.a)
+    assert comparison_system(law, BodyBounds.of(J1)) is None
+
+
+def test_the_same_equations_under_another_name_keep_it():
+    law = filter_law(SameEquations)
+    assert recognise(law).kind == recognise(PERSISTENCE).kind == "persistence-filter"
+    assert comparison_system(law, BodyBounds.of(J1)) is not None
+    assert recognise(law).form["name"] == "persistence-filter"
+    assert recognise(ADAPTIVE).kind == "adaptive-scaling"
+
+
+@dataclass(frozen=True)
+class Sawn(Adaptive):
+    """One parameter more is no other law; a parameter that lies about the start of k is."""
+
+    more: F = F(1)
+
+    @property
+    def controller_states(self):
+        return (ControllerState("R", self.R0, "s"), ControllerState("k", self.more, "1/s"))
+
+
+def test_a_state_that_starts_elsewhere_than_its_parameter_says_loses_the_proof():
+    at = (ADAPTIVE.lambda_, ADAPTIVE.gamma, ADAPTIVE.R0, ADAPTIVE.k0, ADAPTIVE.a)
+    assert recognise(Sawn(*at, more=ADAPTIVE.k0)).kind == "adaptive-scaling"
+    assert "k0" in recognise(Sawn(*at, more=ADAPTIVE.k0 + 1)).reason
+
+
+@pytest.fixture(scope="module")
+def derivative_file():
+    claim = derivative_claim(candidate(close_loop(ADAPTIVE)), J1)
+    return json.loads(certificate_text(certificates_of([claim])))
+
+
+def test_a_file_prints_the_law_that_its_program_is(derivative_file):
+    (finding,) = checker.check_text(json.dumps(derivative_file))
+    assert finding.valid
+    assert any(line.startswith("law adaptive-scaling, lambda") for line in finding.claim)
+
+
+@pytest.mark.parametrize("label", ["adaptive-scaling-as-printed", "persistence-filter", "mine"])
+def test_a_label_that_the_program_does_not_bear_out_is_refused(derivative_file, label):
+    forged = json.loads(json.dumps(derivative_file))
+    forged["parts"][0]["data"]["law"]["name"] = label
+    (finding,) = checker.check_text(json.dumps(forged))
+    assert not finding.valid
+    assert "but its program is adaptive-scaling" in finding.reason
+
+
+def test_a_law_known_by_name_alone_is_compared_with_the_equations_of_that_name():
+    own, adaptive = recognise(PERSISTENCE).form, recognise(ADAPTIVE).form
+    named = {"name": "persistence-filter"}
+    assert _same_law(named, own)
+    assert not _same_law(named, adaptive | {"name": "persistence-filter"})
+    assert not _same_law(own, adaptive | {"name": "persistence-filter"})
+
+
+def test_a_window_that_is_open_across_the_wrap_is_no_counterexample():
+    data = {
+        "schedule": {"knots": ["0", "2", "8"], "shapes": [["1"]], "pieces": ["0", "0"], "period": "8"},
+        "windows": [["0", "2"]],
+    }
+    outcomes = {}
+    for instant in ("0", "1", "4", "8"):
+        claim = {"fact": "support", "instant": instant}
+        part = {
+            "data": data, "certificates": [{"kind": "schedule-counterexample", "claim": claim, "witness": {}}]
+        }  # fmt: skip
+        file = {"format": checker.FORMAT, "version": checker.VERSION, "parts": [part]}
+        (finding,) = checker.check_text(json.dumps(file))
+        outcomes[instant] = finding.valid or finding.reason
+    is_open = "a window is open there"
+    assert outcomes == {"0": is_open, "1": is_open, "4": True, "8": is_open}
