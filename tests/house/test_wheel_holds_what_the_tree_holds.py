@@ -88,7 +88,7 @@ def test_wheel_checks_the_papers_scenario_from_an_empty_folder(wheel: Path, tmp_
     assert made.returncode == 0, made.stderr
     assert (empty / "study" / "paper.toml").is_file()
     checked = subprocess.run(
-        [*command, "check", "--no-margins", "study/paper/figures.toml"],
+        [*command, "check", "--no-margins", "study/paper.toml"],
         cwd=empty,
         env=environment,
         capture_output=True,
