@@ -184,7 +184,7 @@ def _same_law(stated: Mapping[str, Any], own: Mapping[str, Any]) -> bool:
 
     try:
         if set(stated) == {"name"}:
-            return family_of(Node(own, "law")) == stated["name"]
+            return bool(family_of(Node(own, "law")) == stated["name"])
         first, second = (law_polynomials(Node(law, "law")) for law in (stated, own))
     except (Invalid, LookupError):
         return False
