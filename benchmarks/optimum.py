@@ -32,7 +32,7 @@ import scipy.sparse  # noqa: F401
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import Hermite, Window, build_schedule
 from intermit.optim.norms import Euclidean, LargestComponent, Norm
-from intermit.optim.peak import NonlinearProgram, SequentialConvex, TorqueHistory, fly_again
+from intermit.optim.peak import NonlinearProgram, SequentialConvex, TorqueHistory, replay
 from intermit.optim.peak.search import guess
 from intermit.optim.peak.solvers import curvature
 from intermit.optim.peak.transcription import mesh, propagate, scaling, shooting
@@ -221,7 +221,7 @@ def main() -> None:
         profile = np.array(opened, dtype=float)[:, None]
         for name in tools:
             history = TorqueHistory(np.array(points), profile, controls[name], norm)
-            flown = fly_again(task, history)
+            flown = replay(task, history)
             error = max(flown.terminal.attitude_error, flown.terminal.rate_error * float(task.horizon))
             median = statistics.median(times[name])
             print(f"{name:30} {norm.name:18} {median:8.3f} {history.peak:13.9f} {error:10.1e}")

@@ -33,7 +33,7 @@ COMMANDS = (
 INPUT_ERRORS = frozenset({"ScenarioError", "RecordError", "FolderError", "CertificateError"})
 """Errors of the rooms below that the user can mend, by name: naming them imports nothing."""
 
-LONGEST_MESSAGE = 1000
+MAX_MESSAGE = 1000
 """Characters of an error message that are shown."""
 
 SUMMARY = "Check, optimise and report attitude control through thruster windows."
@@ -124,6 +124,6 @@ def _report(error: Exception) -> int:
 
 def _fail(message: str, code: ExitCode) -> int:
     """Say what went wrong in one line on stderr."""
-    line = "".join(c if c.isprintable() else " " for c in message[:LONGEST_MESSAGE])
+    line = "".join(c if c.isprintable() else " " for c in message[:MAX_MESSAGE])
     typer.echo(f"intermit: {line}", err=True)
     return code

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ..study.optimum.run import Optimum, OptimumStudy
 
 STYLES = {Standing.CHECKED: "bold green", Standing.IMPOSSIBLE: "bold red", Standing.UNDECIDED: "bold yellow"}
-MOST_SWITCHES = 12
+MAX_SWITCHES = 12
 """Switch times printed; the record holds them all."""
 
 
@@ -123,6 +123,6 @@ def _details(console: Console, optimum: Optimum) -> None:
         console.print(f"  {residual['label']}: {write(residual, most=2).ascii}")
     if answer.switching is not None and answer.switching.switch_times:
         times = answer.switching.switch_times
-        shown = ", ".join(switch_words(optimum, t, j) for t, j in times[:MOST_SWITCHES])
-        more = f", and {len(times) - MOST_SWITCHES} more" if len(times) > MOST_SWITCHES else ""
+        shown = ", ".join(switch_words(optimum, t, j) for t, j in times[:MAX_SWITCHES])
+        more = f", and {len(times) - MAX_SWITCHES} more" if len(times) > MAX_SWITCHES else ""
         console.print(f"  switches: {shown}{more}")

@@ -14,13 +14,11 @@ from typing import Any, Literal, final
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
 from .laws import Control, Expression, Law, PlantSymbols, TimeSymbols
 from .laws.scaled import augmented_rate
 from .rigid_body import RigidBody, attitude_rate, momentum_rate
-
-Array = NDArray[np.float64]
+from .types import Array
 
 PLANT_STATES = ("b0", "b1", "b2", "b3", "w1", "w2", "w3")
 INERTIA_NAMES = ("J11", "J12", "J13", "J22", "J23", "J33")

@@ -9,7 +9,8 @@ from typing import final
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from .types import Array
+
 ComplexArray = NDArray[np.complex128]
 
 

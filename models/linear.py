@@ -15,13 +15,12 @@ from itertools import pairwise
 from typing import final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from .floquet import Floquet
 from .schedule import Piece, Schedule
 from .schedule.polynomial import Coefficients, compose_affine
-
-Array = NDArray[np.float64]
+from .types import Array
 
 TERMS = 24
 """Terms of a step's Taylor series; with |M| h <= 1/2 the remainder is below 1e-30."""

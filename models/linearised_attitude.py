@@ -15,7 +15,6 @@ from functools import lru_cache
 from typing import Any, final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .closed_loop import body_values, close_loop
 from .floquet import Floquet
@@ -24,8 +23,7 @@ from .lowering import emit_scalar, shared, walk
 from .rigid_body import RigidBody
 from .schedule import Schedule
 from .simulation.phases import Phase, phase_arguments, phases_between, signal_degree
-
-Array = NDArray[np.float64]
+from .types import Array
 
 TOLERANCE = 1e-13
 NEWTON_STEPS = 8

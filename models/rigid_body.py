@@ -14,9 +14,9 @@ from functools import cached_property
 from typing import Any, final
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from .types import Array
+
 ExactMatrix = tuple[tuple[Fraction, Fraction, Fraction], ...]
 
 

@@ -17,9 +17,9 @@ from itertools import combinations
 from typing import final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from ..models.types import Array
 
 
 class Norm(ABC):

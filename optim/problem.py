@@ -16,15 +16,14 @@ from functools import cached_property
 from typing import final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..models.rigid_body import RigidBody
 from ..models.schedule import PiecewisePolynomial, Schedule
 from ..models.schedule.piecewise import Piece
 from ..models.schedule.polynomial import ZERO, compose_affine, polynomial
+from ..models.types import Array
 from .norms import Euclidean, Norm
 
-Array = NDArray[np.float64]
 Quaternion = tuple[Fraction, Fraction, Fraction, Fraction]
 Vector = tuple[Fraction, Fraction, Fraction]
 Number = Fraction | int | float | str

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decimal
 from typing import Any, final
 
-MOST_DIGITS = 7
+MAX_DIGITS = 7
 """Digits shown at most, however many are known."""
 BOUND_DIGITS = 5
 """Digits of a one-sided bound: true at any length, and rounding it the safe way costs less than 1e-4."""
@@ -75,7 +75,7 @@ class Written:
         return " ".join(p for p in (relation, body, unit_text(self.unit)) if p)
 
 
-def write(quantity: Mapping[str, Any], *, most: int = MOST_DIGITS, unit: bool = True) -> Written:
+def write(quantity: Mapping[str, Any], *, most: int = MAX_DIGITS, unit: bool = True) -> Written:
     """Write a record's quantity with the digits it deserves."""
     low, high = (bound(quantity[k]) for k in ("low", "high"))
     side = quantity.get("side", "both")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import final
 
-LONGEST_QUOTE = 60
+MAX_QUOTE = 60
 """Characters of a user's own text that an error message repeats."""
 
 
@@ -35,6 +35,6 @@ def quote(value: object) -> str:
     """Return a user's own value as it is repeated in a message: one line, not endless."""
     text = value if isinstance(value, str) else str(value).lower() if isinstance(value, bool) else str(value)
     shown = one_line(text)
-    if len(shown) > LONGEST_QUOTE:
-        shown = shown[: LONGEST_QUOTE - 3] + "..."
+    if len(shown) > MAX_QUOTE:
+        shown = shown[: MAX_QUOTE - 3] + "..."
     return f"'{shown}'" if isinstance(value, str) else shown

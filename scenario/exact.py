@@ -11,9 +11,9 @@ from pydantic import PlainValidator
 
 from .errors import quote
 
-LARGEST_EXPONENT = 30
+MAX_EXPONENT = 30
 """Numbers are 0 or lie between 1e-30 and 1e30 in magnitude."""
-LONGEST_NUMBER = 60
+MAX_NUMBER = 60
 """Significant digits kept."""
 
 _DECIMAL = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,4})?", re.ASCII)
@@ -35,10 +35,10 @@ def exact(value: object) -> Fraction:
     if not number.is_finite():
         raise ValueError(f"expected a finite number, received {quote(value)}")
     digits = len(number.as_tuple().digits)
-    if number and (abs(number.adjusted()) > LARGEST_EXPONENT or digits > LONGEST_NUMBER):
+    if number and (abs(number.adjusted()) > MAX_EXPONENT or digits > MAX_NUMBER):
         raise ValueError(
-            f"expected 0 or a number between 1e-{LARGEST_EXPONENT} and 1e{LARGEST_EXPONENT} "
-            f"with at most {LONGEST_NUMBER} digits, received {number:.3g}"
+            f"expected 0 or a number between 1e-{MAX_EXPONENT} and 1e{MAX_EXPONENT} "
+            f"with at most {MAX_NUMBER} digits, received {number:.3g}"
         )
     return Fraction(number)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from .errors import ScenarioError
 
 MEGABYTE = 1024 * 1024
-LARGEST_FILE = 10 * MEGABYTE
+MAX_FILE = 10 * MEGABYTE
 """Bytes a scenario, CSV or law file may have: 10 MB, checked before it is read."""
 
 
@@ -32,7 +32,7 @@ def read_text(path: Path, where: str) -> str:
         problem = _refusal(path.stat())
         if problem is None:
             with path.open("rb") as stream:
-                raw = stream.read(LARGEST_FILE)
+                raw = stream.read(MAX_FILE)
     except FileNotFoundError:
         problem = "no such file"
     except (OSError, ValueError) as error:
@@ -52,7 +52,7 @@ def _refusal(status: os.stat_result) -> str | None:
         return "is a directory, expected a file"
     if not stat.S_ISREG(status.st_mode):
         return "is not a regular file"
-    if status.st_size > LARGEST_FILE:
-        limit = LARGEST_FILE // MEGABYTE
+    if status.st_size > MAX_FILE:
+        limit = MAX_FILE // MEGABYTE
         return f"has {status.st_size / MEGABYTE:.1f} MB: files over {limit} MB are refused"
     return None

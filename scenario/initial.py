@@ -8,14 +8,13 @@ from fractions import Fraction
 from typing import final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..models.rigid_body import RigidBody
+from ..models.types import Array
 from .document import Document
 from .errors import ScenarioError
 from .schema import AttitudeTable, InitialSetTable, InitialTable, ScenarioFile
 
-Array = NDArray[np.float64]
 UNIT_TOLERANCE = Fraction(1, 10**6)
 """How far a quaternion's squared norm may be from 1; within it, it is normalised."""
 ANGLE_ALLOWANCE = Fraction(1, 10**9)

@@ -8,7 +8,7 @@ from .document import Document
 from .errors import ScenarioError
 from .schema import LinearTable
 
-MOST_STATES = 12
+MAX_STATES = 12
 """States a linear plant may have: its proof takes time like their cube."""
 
 
@@ -22,9 +22,9 @@ def build(table: LinearTable | None, schedule: Schedule, document: Document) -> 
     """
     if table is None:
         return None
-    if len(table.A) > MOST_STATES:
+    if len(table.A) > MAX_STATES:
         raise ScenarioError(
-            document.where("linear.A"), f"expected at most {MOST_STATES} rows, received {len(table.A)}"
+            document.where("linear.A"), f"expected at most {MAX_STATES} rows, received {len(table.A)}"
         )
     try:
         return LinearPlant.from_rows(table.A, table.B, table.K, schedule)

@@ -14,7 +14,7 @@ Norm = Literal["component", "euclidean"]
 Profile = Literal["window", "gain"]
 Interval = tuple[Exact, Exact]
 
-MOST_SAMPLES = 2**30
+MAX_SAMPLES = 2**30
 """Distinct points of the Sobol sequence that is drawn from."""
 
 
@@ -37,8 +37,8 @@ class CheckTable(Table):
     @field_validator("samples")
     @classmethod
     def _distinct(cls, value: int) -> int:
-        if value > MOST_SAMPLES:
-            raise ValueError(f"expected at most {MOST_SAMPLES} (distinct points), received {value}")
+        if value > MAX_SAMPLES:
+            raise ValueError(f"expected at most {MAX_SAMPLES} (distinct points), received {value}")
         return value
 
 

@@ -14,7 +14,7 @@ from .document import Document
 from .errors import ScenarioError
 from .schema import ScheduleTable
 
-LARGEST_COUNT = 200_000
+MAX_COUNT = 200_000
 """Windows that `count` may ask for."""
 Locate = Callable[[int], str]
 """From the position of a window (from 0) to the words by which messages name it."""
@@ -121,9 +121,9 @@ def _windows(table: ScheduleTable, document: Document) -> tuple[list[Window], Lo
         raise ScenarioError(document.where("schedule.period"), "required with on_time, but missing")
     on, on_time, period = table.on or Fraction(0), table.on_time or Fraction(0), table.period
     count = table.count or 1
-    if table.count is not None and count > LARGEST_COUNT:
+    if table.count is not None and count > MAX_COUNT:
         raise ScenarioError(
-            document.where("schedule.count"), f"must be at most {LARGEST_COUNT}, received {count}"
+            document.where("schedule.count"), f"must be at most {MAX_COUNT}, received {count}"
         )
     if on + on_time > period:
         raise ScenarioError(

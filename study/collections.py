@@ -6,15 +6,14 @@ from dataclasses import dataclass, field
 from typing import Any, final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..models.types import Array
 from ..optim.comparison.measure import Task
 from ..reports import parts
 from ..reports.provenance import provenance
 from ..reports.record import Record
 from ..scenario import Scenario
-
-Array = NDArray[np.float64]
 
 
 @final

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any, final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..models.closed_loop import Saturation
 from ..models.laws import Law
@@ -20,10 +19,9 @@ from ..models.simulation import (
     read_figures,
     simulate,
 )
+from ..models.types import Array
 from ..reports import parts
 from ..scenario import Scenario
-
-Array = NDArray[np.float64]
 
 
 @final
@@ -46,7 +44,7 @@ class Run:
 
 @final
 @dataclass(frozen=True)
-class Seen:
+class RunFigures:
     """What a run showed.
 
     Attributes
@@ -61,17 +59,17 @@ class Seen:
     excess_at: float | None = None
 
 
-def seen_in(scenario: Scenario, run: Run | None) -> Seen:
+def seen_in(scenario: Scenario, run: Run | None) -> RunFigures:
     """Figures of a run that stand beside what is proved."""
     if run is None or run.figures is None or run.trajectory is None:
-        return Seen()
+        return RunFigures()
     torque, floor = run.figures.torque, run.figures.filter_minimum
     euclidean = scenario.limits is not None and scenario.limits.norm == "euclidean"
     peak = torque.peak_euclidean if euclidean else torque.peak_component
     over = None
     if scenario.limits is not None and not run.trajectory.is_saturated_model:
         over = _excess_instant(run.trajectory, float(scenario.limits.torque), peak.value, euclidean=euclidean)
-    return Seen(floor.value if floor is not None else None, peak.value, over)
+    return RunFigures(floor.value if floor is not None else None, peak.value, over)
 
 
 def _excess_instant(trajectory: Trajectory, limit: float, peak: float, *, euclidean: bool) -> float | None:

@@ -48,7 +48,7 @@ class Invalid(Exception):  # noqa: N818 (it is the word printed)
 # --- exact numbers ---------------------------------------------------------------------------
 
 _NUMBER = re.compile(r"[+-]?[0-9]+(?:/0*[1-9][0-9]*|(?:\.[0-9]+)?(?:[eE]([+-]?[0-9]{1,4}))?)")
-MOST_DIGITS = 4000
+MAX_DIGITS = 4000
 """Of a number in the file. Longer ones are refused: a short file could otherwise be checked for ever."""
 
 
@@ -56,13 +56,13 @@ def exact(text: object) -> Fraction:
     """Return the rational number that a string or an integer of the file stands for."""
     if isinstance(text, int) and not isinstance(text, bool):
         return Fraction(text)
-    if isinstance(text, str) and len(text) > MOST_DIGITS:
-        raise Invalid(f"a number of {len(text)} characters: at most {MOST_DIGITS} digits are read")
+    if isinstance(text, str) and len(text) > MAX_DIGITS:
+        raise Invalid(f"a number of {len(text)} characters: at most {MAX_DIGITS} digits are read")
     found = _NUMBER.fullmatch(text) if isinstance(text, str) else None
     if not isinstance(text, str) or found is None:
         raise Invalid(f"expected an exact number as a string, received {str(text)[:40]!r}")
-    if abs(int(found[1] or 0)) + len(text) > MOST_DIGITS:
-        raise Invalid(f"the number {text[:40]} has more than {MOST_DIGITS} digits")
+    if abs(int(found[1] or 0)) + len(text) > MAX_DIGITS:
+        raise Invalid(f"the number {text[:40]} has more than {MAX_DIGITS} digits")
     return Fraction(text)
 
 
@@ -192,8 +192,8 @@ def _no_float(text: str) -> Any:
 
 
 def _integer(text: str) -> int:
-    if len(text) > MOST_DIGITS:
-        raise Invalid(f"a number of {len(text)} characters: at most {MOST_DIGITS} digits are read")
+    if len(text) > MAX_DIGITS:
+        raise Invalid(f"a number of {len(text)} characters: at most {MAX_DIGITS} digits are read")
     return int(text)
 
 
@@ -439,7 +439,7 @@ class Poly:
         return self + (-other)
 
     def __mul__(self, other: Poly) -> Poly:
-        require(len(self.terms) * len(other.terms) <= MOST_TERMS**2, "a polynomial has too many terms")
+        require(len(self.terms) * len(other.terms) <= MAX_TERMS**2, "a polynomial has too many terms")
         terms: dict[Exponents, Fraction] = {}
         for left, a in self.terms.items():
             for right, b in other.terms.items():
@@ -515,19 +515,19 @@ class Poly:
         return " ".join(parts).removeprefix("+ ") or "0"
 
 
-MOST_TERMS = 3000
-LARGEST_POWER = 60
-LARGEST_BASIS = 400
+MAX_TERMS = 3000
+MAX_POWER = 60
+MAX_BASIS = 400
 """Terms of a polynomial, powers in it, monomials of a Gram matrix: beyond, checking could take for ever."""
 
 
 def require_modest(p: Poly, path: str) -> None:
     """Refuse a polynomial whose powers or numbers have grown beyond anything a law needs."""
-    require(len(p.terms) <= MOST_TERMS, f"{path}: a polynomial has too many terms")
+    require(len(p.terms) <= MAX_TERMS, f"{path}: a polynomial has too many terms")
     powers = (abs(e) for key in p.terms for e in key)
-    require(max(powers, default=0) <= LARGEST_POWER, f"{path}: a power is too high")
+    require(max(powers, default=0) <= MAX_POWER, f"{path}: a power is too high")
     sizes = (v.numerator.bit_length() + v.denominator.bit_length() for v in p.terms.values())
-    require(max(sizes, default=0) <= 8 * MOST_DIGITS, f"{path}: a number is too long")
+    require(max(sizes, default=0) <= 8 * MAX_DIGITS, f"{path}: a number is too long")
 
 
 def on_sphere(p: Poly) -> Poly:
@@ -1019,7 +1019,7 @@ def _sum_of_squares(ring: Ring, place: Node, claim: Node) -> Poly:
     result = ring.constant(0)
     for term in place.items():
         basis = [_monomial(ring, node.text()) for node in term["basis"].items()]
-        require(len(basis) <= LARGEST_BASIS, f"{term.path}: the basis is too long")
+        require(len(basis) <= MAX_BASIS, f"{term.path}: the basis is too long")
         gram = term["gram"].matrix(len(basis), len(basis))
         require(is_positive_semidefinite(gram), f"{term.path}: the Gram matrix is not positive semidefinite")
         form = ring.constant(0)
@@ -1287,7 +1287,7 @@ def read_profile(data: Node) -> Profile:
     require(all(0 <= i < len(table) for i in use), "a piece names a shape that is not there")
     require(knots[0] == 0 and all(a < b for a, b in pairwise(knots)), "knots must increase from 0")
     require(bool(table), "there are no shapes")
-    require(all(len(row) <= LARGEST_COUNT for row in table), "a shape has too many coefficients")
+    require(all(len(row) <= MAX_COUNT for row in table), "a shape has too many coefficients")
     require(
         all(from_powers(row or [Fraction(0)]).is_nonnegative() for row in table),
         "the gain is not proved >= 0",
@@ -1642,8 +1642,8 @@ class FloorStep:
 Bounds = dict[str, Fraction]
 
 
-LARGEST_EXPONENT = 4096
-LARGEST_COUNT = 64
+MAX_EXPONENT = 4096
+MAX_COUNT = 64
 """Of a polynomial's power of 2, and of its coefficients: beyond, checking would take for ever."""
 
 
@@ -1668,7 +1668,7 @@ def read_steps(place: Node, start: Fraction, sides: dict[str, int]) -> list[Floo
             require(all(v.denominator == 1 for v in numbers), f"{node.path}: expected integers for {name}")
             exponent, *mantissas = (int(v) for v in numbers)
             require(
-                abs(exponent) <= LARGEST_EXPONENT and 0 < len(mantissas) <= LARGEST_COUNT,
+                abs(exponent) <= MAX_EXPONENT and 0 < len(mantissas) <= MAX_COUNT,
                 f"{node.path}: the polynomial of {name} is out of range",
             )
             unit = Fraction(2) ** exponent
@@ -2305,7 +2305,7 @@ def check_floquet(data: Node, certificate: Node) -> list[str]:
     plant, claim, witness = data["plant"], certificate["claim"], certificate["witness"]
     A, B, K = (plant[name].matrix() for name in ("A", "B", "K"))
     n = len(A)
-    require(n <= LARGEST_COUNT, "the plant has too many states")
+    require(n <= MAX_COUNT, "the plant has too many states")
     fits = len(A[0]) == n and len(B) == n and len(K) == len(B[0]) and len(K[0]) == n
     require(fits, "A, B and K do not fit each other")
     profile = read_profile(data)

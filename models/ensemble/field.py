@@ -13,7 +13,8 @@ from ..closed_loop import ClosedLoop, Saturation, close_loop
 from ..laws import Law
 from ..lowering import ArrayFunction, shared, walk
 from ..simulation.phases import Phase, phase_arguments
-from .step import Array, Index, Mask
+from ..types import Array
+from .step import Index, Mask
 
 COEFFICIENTS, PARAMETERS, BODY = 2, 3, 4
 """Arguments of the lowered right-hand side after (tau, state)."""

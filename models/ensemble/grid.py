@@ -6,7 +6,8 @@ from typing import final
 
 import numpy as np
 
-from .step import Array, Observer, Step
+from ..types import Array
+from .step import Observer, Step
 
 
 @final

@@ -8,9 +8,10 @@ from typing import Any, final
 import numpy as np
 
 from ..simulation.phases import Phase
+from ..types import Array
 from .observables import NAMES, Observables
 from .runs import Runs
-from .step import Array, Basis, Index, Mask, Observer, Step, nested
+from .step import Basis, Index, Mask, Observer, Step, nested
 
 GOLDEN = (np.sqrt(5.0) - 1) / 2
 SCAN = 33

@@ -9,9 +9,10 @@ import numpy as np
 
 from ..lowering import ArrayFunction, shared, walk
 from ..simulation.phases import Phase, phase_arguments, signal_degree
+from ..types import Array
 from .field import Structure, representative_loop
 from .runs import Runs
-from .step import Array, Index
+from .step import Index
 
 NAMES = (
     "peak_component",

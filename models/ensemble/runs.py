@@ -7,14 +7,13 @@ from dataclasses import dataclass
 from typing import final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..closed_loop import ClosedLoop, Saturation, body_values
 from ..laws import Law
 from ..rigid_body import RigidBody
+from ..types import Array
 from .field import Structure, representative_loop
-
-Array = NDArray[np.float64]
 
 
 @final

@@ -17,11 +17,12 @@ from ..lowering import Backend
 from ..rigid_body import RigidBody
 from ..schedule import Schedule
 from ..simulation.phases import Phase, phases_between
+from ..types import Array
 from .grid import GridObserver
 from .metrics import EnsembleMetrics, MetricOptions, MetricsObserver, joined_metrics
 from .runs import Runs, gather_runs
 from .stacked import STACK, Ends, integrate_stack
-from .step import Array, Observer
+from .step import Observer
 from .steps import Tolerances
 
 Integrate = Callable[[Runs, tuple[Phase, ...], Tolerances, tuple[Observer, ...]], Ends]

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 
 from ..lowering import ArrayFunction, shared, walk
 from ..simulation.phases import Phase, signal_degree
+from ..types import Array
 from .field import StackedField, Structure, representative_loop
 from .runs import Runs
-from .step import Array, Mask, Observer
+from .step import Mask, Observer
 from .steps import Stack, Tolerances
 
 STACK = 1024

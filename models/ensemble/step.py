@@ -10,7 +10,8 @@ from typing import final
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ..types import Array
+
 Mask = NDArray[np.bool_]
 Index = NDArray[np.intp]
 Basis = Callable[[Array, int], Array]

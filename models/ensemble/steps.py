@@ -14,10 +14,11 @@ from typing import Protocol, final
 
 import numpy as np
 
-from .step import Array, Index, Mask, Observer, Step, nested
+from ..types import Array
+from .step import Index, Mask, Observer, Step, nested
 
 STAGES = 12
-SAFETY, LEAST_FACTOR, LARGEST_FACTOR = 0.85, 0.2, 10.0
+SAFETY, MIN_FACTOR, MAX_FACTOR = 0.85, 0.2, 10.0
 ERROR_EXPONENT = -1 / 8
 
 
@@ -174,8 +175,8 @@ class Stack:
         self, accepted: Mask, error: Array, h: Array, arrived: Array, new: Array, f_new: Array
     ) -> None:
         factor = SAFETY * np.maximum(error, 1e-30) ** ERROR_EXPONENT
-        largest = np.where(accepted & ~self._rejected, LARGEST_FACTOR, 1.0)
-        self.h = h * np.clip(factor, LEAST_FACTOR, largest)
+        largest = np.where(accepted & ~self._rejected, MAX_FACTOR, 1.0)
+        self.h = h * np.clip(factor, MIN_FACTOR, largest)
         self._rejected = ~accepted
         if accepted.all():
             self.y, self.f, self.t = new, f_new.copy(), arrived

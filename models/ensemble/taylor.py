@@ -15,11 +15,12 @@ import numpy as np
 from ..lowering import shared, walk
 from ..lowering.heyoka_table import heyoka_expressions, load_heyoka
 from ..simulation.phases import Phase, signal_degree
+from ..types import Array
 from .field import Structure, field_function, representative_loop
 from .grid import GridObserver
 from .runs import Runs
 from .stacked import Ends, reset_states
-from .step import Array, Observer
+from .step import Observer
 from .steps import Tolerances
 from .taylor_passages import EndsOnly, EveryStep, Interval, OnGrid, Passage
 

@@ -8,10 +8,11 @@ from typing import Any, final
 import numpy as np
 
 from ..simulation.phases import Phase
+from ..types import Array
 from .grid import GridObserver
-from .step import Array, Index, Observer, Step, powers
+from .step import Index, Observer, Step, powers
 
-MOST_STEPS = 20_000
+MAX_STEPS = 20_000
 """Steps a phase after which a run counts as escaping."""
 
 
@@ -45,7 +46,7 @@ class EndsOnly(Passage):
     def carry(self, integrator: Any, first: int, used: int) -> None:
         """Carry the lanes."""
         del first, used
-        integrator.propagate_until(self._end, max_steps=MOST_STEPS)
+        integrator.propagate_until(self._end, max_steps=MAX_STEPS)
 
 
 @final
@@ -68,7 +69,7 @@ class OnGrid(Passage):
 
     def carry(self, integrator: Any, first: int, used: int) -> None:
         """Carry the lanes."""
-        values = integrator.propagate_grid(self._points, max_steps=MOST_STEPS)[1]
+        values = integrator.propagate_grid(self._points, max_steps=MAX_STEPS)[1]
         kept = values[self._leading : self._leading + self._last - self._first, :, :used]
         self._grid.place(first, used, self._first, self._last, kept)
 
@@ -91,7 +92,7 @@ class EveryStep(Passage):
             times.append(stepped.time.copy())
             return True
 
-        integrator.propagate_until(self._interval.end, max_steps=MOST_STEPS, callback=record, write_tc=True)
+        integrator.propagate_until(self._interval.end, max_steps=MAX_STEPS, callback=record, write_tc=True)
         self._records.append((first, used, coefficients, times))
 
     def finish(self) -> None:

@@ -12,13 +12,11 @@ from collections.abc import Callable, Sequence
 from typing import Any, final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..types import Array
 from .blocks import BlockFunction
 from .plan import EMIT, Plan
 from .walk import Program, check_operations
-
-Array = NDArray[np.float64]
 
 EXACT = frozenset(["assign", "add", "sub", "mul", "div", "neg", "sq", "twice", "inv", "sqrt"]) | frozenset(
     ["fabs", "copysign", "floor", "ceil", "fmin", "fmax"]
@@ -28,7 +26,7 @@ WORKING_SET = 1 << 20
 """Bytes of block buffers: with the samples themselves they stay in a second-level cache of 2 MB."""
 LINE = 8
 """Floats in a line of the cache: rows that begin between two lines cost a quarter of the speed."""
-LEAST_BLOCK, LARGEST_BLOCK = 1024, 8192
+MIN_BLOCK, MAX_BLOCK = 1024, 8192
 
 
 @final
@@ -104,7 +102,7 @@ def _rounded(count: int) -> int:
 
 def _block(buffer_count: int) -> int:
     fitting = WORKING_SET // (8 * max(buffer_count, 1)) // 64 * 64
-    return min(max(fitting, LEAST_BLOCK), LARGEST_BLOCK)
+    return min(max(fitting, MIN_BLOCK), MAX_BLOCK)
 
 
 def if_else_zero(condition: Any, value: Any, out: Array | None = None) -> Any:

@@ -7,11 +7,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..types import Array
 from .walk import Program, check_arguments
-
-Array = NDArray[np.float64]
 
 
 class BlockFunction(ABC):

@@ -6,13 +6,11 @@ from collections.abc import Sequence
 from typing import Any, final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..types import Array
 from .blocks import BlockFunction
 from .heyoka_table import heyoka_expressions, load_heyoka
 from .walk import Program
-
-Array = NDArray[np.float64]
 
 HEYOKA_BLOCK = 4096
 KEPT = 8

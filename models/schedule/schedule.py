@@ -10,12 +10,11 @@ from functools import cached_property, lru_cache
 from typing import final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..types import Array
 from .piecewise import Piece, PiecewisePolynomial
 from .polynomial import ZERO
-
-Array = NDArray[np.float64]
 
 
 @final

@@ -8,16 +8,15 @@ from fractions import Fraction
 from typing import Any, final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..closed_loop import ClosedLoop, Saturation, body_values, close_loop
 from ..laws import Law
 from ..rigid_body import RigidBody
 from ..schedule import Schedule
+from ..types import Array
 from .phases import Phase, phase_field, phases_between, signal_degree
 from .trajectory import Segment, Trajectory
-
-Array = NDArray[np.float64]
 
 
 class SimulationError(RuntimeError):

@@ -9,9 +9,9 @@ from typing import final
 import numpy as np
 from numpy.typing import NDArray
 
+from ..types import Array
 from .trajectory import Trajectory
 
-Array = NDArray[np.float64]
 ScalarOfTime = Callable[[Array], Array]
 
 

@@ -14,14 +14,12 @@ from typing import Any, final
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
 from ..closed_loop import ClosedLoop
 from ..laws import Law
 from ..schedule import Schedule
 from ..schedule.polynomial import ZERO, Coefficients
-
-Array = NDArray[np.float64]
+from ..types import Array
 
 
 @final

@@ -13,9 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 from ..closed_loop import ClosedLoop, body_values
 from ..rigid_body import RigidBody
 from ..schedule import Schedule
+from ..types import Array
 from .phases import Phase
-
-Array = NDArray[np.float64]
 
 
 @final

@@ -29,7 +29,7 @@ class MomentumArgument:
 
 @final
 @dataclass(frozen=True)
-class Departure:
+class StartSet:
     """Where a path is counted from.
 
     Attributes
@@ -67,7 +67,7 @@ class PathArgument:
 
     momenta: MomentumSet
     path: PathBound
-    departure: Departure
+    departure: StartSet
 
 
 @final

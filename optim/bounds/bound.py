@@ -14,7 +14,7 @@ import numpy as np
 
 from ..norms import Euclidean, LargestComponent
 from ..problem import TransferProblem
-from .argument import Argument, ComponentsArgument, Departure, MomentumArgument, PathArgument
+from .argument import Argument, ComponentsArgument, MomentumArgument, PathArgument, StartSet
 from .potential.cache import remembered
 from .potential.path import PathBound, PathOptions, path_bound
 from .potential.separation import Target
@@ -22,7 +22,7 @@ from .sets.chart import Quaternion, arc_to_identity
 from .sets.gauge import GaugeSet, invariant_set, longest_vertex
 from .sets.momentum_sets import MomentumSet, UnitBall
 from .windows.coast import Coast, coasts
-from .windows.components import Sides, Widths, component_bounds, peak_from_components
+from .windows.components import TransferSides, Widths, component_bounds, peak_from_components
 from .windows.deviation import deviation_above, growth_of_deviations
 from .windows.travel import WindowTravel, least_peak, momentum_peak, rounded_down
 
@@ -131,7 +131,7 @@ def _by_components(
     windows = WindowTravel(problem.window)
     if windows.total == 0 or known <= 0:
         return []
-    sides = Sides(problem.window, windows.instant(windows.total / 2))
+    sides = TransferSides(problem.window, windows.instant(windows.total / 2))
     first = component_bounds(momenta, sides, Fraction(float(known) * options.trial))
     share = Fraction(options.share)
     # Steps of 1/50 are fine enough, and let sweeps over windows share their potentials.
@@ -173,7 +173,7 @@ def _momentum_and_path(
     ]
 
 
-def best_departure(problem: TransferProblem, momenta: MomentumSet, windows: WindowTravel) -> Departure:
+def best_departure(problem: TransferProblem, momenta: MomentumSet, windows: WindowTravel) -> StartSet:
     """Choose the coast after which straight ways, a guess of the shortest, ask for the largest peak."""
     H0 = start_momentum(problem)
     start, end = momenta.size_above(H0), momenta.size_of_rate(problem.terminal.rate)
@@ -186,7 +186,7 @@ def best_departure(problem: TransferProblem, momenta: MomentumSet, windows: Wind
 
     best = max((coast for coast in coasts(problem) if growth.allows(coast.until)), key=promise)
     deviation = deviation_above(windows, best.until, growth)
-    return Departure(best, growth, deviation, momenta.size_of_rate(best.turn))
+    return StartSet(best, growth, deviation, momenta.size_of_rate(best.turn))
 
 
 def _straight(momenta: MomentumSet, coast: Coast, signs: tuple[int, ...]) -> float:

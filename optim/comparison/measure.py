@@ -7,7 +7,6 @@ from fractions import Fraction
 from typing import final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...models.laws import Law
 from ...models.rigid_body import RigidBody
@@ -19,8 +18,7 @@ from ...models.simulation import (
     read_figures,
     simulate,
 )
-
-Array = NDArray[np.float64]
+from ...models.types import Array
 
 
 @final

@@ -64,6 +64,6 @@ def certified_floor(law: Law, task: Task) -> float | None:
     )
     finite_end = None if task.schedule.period is not None else task.schedule.end
     floor = certify_floor(law, bounds, task.schedule, start, horizon=finite_end)
-    if floor is None or floor.stuck is not None or floor.value <= 0:
+    if floor is None or floor.failed_at is not None or floor.value <= 0:
         return None
     return floor.value

@@ -6,15 +6,13 @@ from concurrent.futures import Executor
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...models.ensemble import EnsembleResult, MetricOptions, Tolerances, simulate_ensemble
 from ...models.laws import Law
+from ...models.types import Array
 from ..comparison.measure import Task
 from .search import Outcomes
 from .space import with_parameters
-
-Array = NDArray[np.float64]
 
 SEARCHING = Tolerances(rtol=1e-7, atol=1e-9, phase_evaluations=3000)
 """Accuracy while searching; what is reported is simulated again. A candidate too stiff for this fails."""

@@ -8,11 +8,9 @@ from fractions import Fraction
 from typing import final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...models.types import Array
 from .space import SearchSpace
-
-Array = NDArray[np.float64]
 
 Evaluate = Callable[[list[dict[str, Fraction]]], "Outcomes"]
 """From candidates to outcomes, many at once."""

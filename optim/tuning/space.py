@@ -10,11 +10,10 @@ from fractions import Fraction
 from typing import Any, cast, final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...models.laws import Law
+from ...models.types import Array
 
-Array = NDArray[np.float64]
 SPREAD = 30
 """A parameter without a stated range is searched within this factor of its given value."""
 DIGITS = 6

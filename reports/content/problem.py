@@ -12,14 +12,14 @@ from .blocks import Axis, Block, Cell, Chapter, Chart, Charts, Equations, Facts,
 from .equations import equations_for
 from .wording import plural, shared
 
-MOST_WINDOWS = 300
+MAX_WINDOWS = 300
 """Windows shaded in a figure at most; beyond them the shading would be solid."""
 
 
 def shaded(record: Record) -> tuple[tuple[float, float], ...]:
-    """Thruster windows as figures shade them: none if there are more than `MOST_WINDOWS`."""
+    """Thruster windows as figures shade them: none if there are more than `MAX_WINDOWS`."""
     windows = record.sections.get("schedule", {}).get("windows", ())
-    return tuple((w[0], w[1]) for w in windows) if len(windows) <= MOST_WINDOWS else ()
+    return tuple((w[0], w[1]) for w in windows) if len(windows) <= MAX_WINDOWS else ()
 
 
 def problem_chapter(record: Record) -> Chapter | None:
@@ -105,7 +105,7 @@ def schedule_chapter(record: Record) -> Chapter | None:
         blocks.append(Facts(tuple(rows)))
     if schedule.get("extends"):
         blocks.append(Text(extends[schedule["extends"]], "note"))
-    if len(windows) > MOST_WINDOWS:
+    if len(windows) > MAX_WINDOWS:
         blocks.append(Text(f"The {len(windows)} windows are too many to shade in the figures.", "note"))
     blocks.extend(Text(note, "note") for note in schedule.get("notes", ()))
     return Chapter("schedule", "Schedule", tuple(blocks))

@@ -15,7 +15,7 @@ from .verdicts import floors
 from .wording import plural, shared
 
 TIME = Axis("time", "s")
-MOST_BESIDE = 5
+MAX_BESIDE = 5
 """Runs that a table puts side by side."""
 WIDE = 100.0
 """Ratio of the greatest to the least value from which a logarithmic axis says more."""
@@ -95,7 +95,7 @@ def metrics_table(runs: tuple[Run, ...]) -> Table | None:
     if not columns:
         return None
     held = [{q["name"]: q for q in run.data["metrics"]} for run in runs]
-    if len(runs) <= MOST_BESIDE:
+    if len(runs) <= MAX_BESIDE:
         heads = (("what", "Figure", ""), *((str(i), run.label, "") for i, run in enumerate(runs)))
         lines = tuple(
             {"what": label} | {str(i): metrics.get(name) for i, metrics in enumerate(held)}

@@ -6,7 +6,7 @@ import numpy as np
 
 from .blocks import Chart
 
-MOST_DECADES = 3.0
+MAX_DECADES = 3.0
 """Span of the values up to which every decade is divided."""
 
 
@@ -18,7 +18,7 @@ def log_ticks(chart: Chart) -> tuple[float, ...]:
         return ()
     low = min(float(a.min()) for a in values if a.size)
     high = max(float(a.max()) for a in values if a.size)
-    if np.log10(high / low) > MOST_DECADES:
+    if np.log10(high / low) > MAX_DECADES:
         return ()
     first, last = int(np.floor(np.log10(low))), int(np.ceil(np.log10(high)))
     every = [digit * 10.0**power for power in range(first, last + 1) for digit in (1, 2, 5)]

@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-LONGEST_LABEL = 60
+MAX_LABEL = 60
 """Characters of a name kept inside a figure; the full name stands in the text."""
 
 
-def short(text: str, most: int = LONGEST_LABEL) -> str:
+def short(text: str, most: int = MAX_LABEL) -> str:
     """One line, at most `most` characters."""
     line = " ".join(text.split())
     return line if len(line) <= most else line[: most - 1] + "…"

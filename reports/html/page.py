@@ -17,7 +17,7 @@ from ..content.budget import thin
 from ..content.heading import Heading
 from ..content.typeset import equation_svgs
 from ..content.verdicts import claim_numbers, refutation
-from ..content.wording import LONGEST_LABEL, short, visible
+from ..content.wording import MAX_LABEL, short, visible
 from ..numbers import number, unit_text, write
 from ..values import thaw
 from .plotly import figure
@@ -107,7 +107,7 @@ def _environment() -> Any:
 def cut_names(chart: Chart) -> tuple[str, ...]:
     """Names a figure shows only the beginning of."""
     names = [line.label for line in chart.lines] if len(chart.lines) > 1 else []
-    return tuple(dict.fromkeys(n for n in (*names, chart.x.label, chart.y.label) if len(n) > LONGEST_LABEL))
+    return tuple(dict.fromkeys(n for n in (*names, chart.x.label, chart.y.label) if len(n) > MAX_LABEL))
 
 
 def html_number(quantity: Mapping[str, Any], *, unit: bool = True) -> Markup:

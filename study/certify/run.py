@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any, final
 
 from ...models.closed_loop import close_loop
 from ...models.laws import Law
+from ...models.types import Progress
 from ...scenario import Scenario
 from ...verify.certificates import Certificate, as_text, certificate_text
 from ...verify.certificates.excitation import excitation_certificate
@@ -26,9 +27,7 @@ from ..check.case import decided_claims
 from ..check.filter_question import floor_question
 from ..check.run import scenario_claims
 from ..optimum.lower_bounds import asks_for_optimum, own_bound_claim, transfers_data
-from ..simulated_run import Seen
-
-Progress = Callable[[str, float], None]
+from ..simulated_run import RunFigures
 
 
 @final
@@ -118,7 +117,7 @@ def _scenario_data(scenario: Scenario, transfers: Sequence[Mapping[str, Any]]) -
         yield shared
     for choice in scenario.laws:
         law = choice.build()
-        data = shared | question_data(floor_question(scenario, law, Seen(), search=False))
+        data = shared | question_data(floor_question(scenario, law, RunFigures(), search=False))
         data |= inertia_data(scenario.body.exact_inertia, scenario.inertia_tolerance)
         data["parameters"] = _true_parameters(law)
         with suppress(NotAlgebraicError):  # such a law has no certificate that writes it out

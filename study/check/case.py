@@ -10,6 +10,7 @@ from typing import final
 
 from ...models.closed_loop import close_loop
 from ...models.laws import Law
+from ...models.types import Progress, silent
 from ...scenario import LawChoice, Scenario
 from ...verify.filter.answer import FloorAnswer, answer
 from ...verify.filter.claims import torque_quantities
@@ -20,14 +21,12 @@ from ...verify.sampling import SampledDerivative, with_samples
 from ...verify.schedule.filter_start import filter_start_claim
 from ...verify.verdict import Claim, Quantity, Verdict
 from ..claims.keys import CLAIM_KEYS, order_of
-from ..simulated_run import Run, Seen
+from ..simulated_run import Run, RunFigures
 from .curves import CertifiedCurves, certified_curves
 from .filter_question import floor_question, is_certified
 from .margins import convergence_margins, with_margins
 from .sampled import reference_floor, sample_law
 from .why_floor import floor_note
-
-Progress = Callable[[str, float], None]
 
 
 @final
@@ -106,10 +105,14 @@ Sampled = tuple[SampledDerivative | None, str]
 
 
 def decide(
-    scenario: Scenario, choice: LawChoice, seen: Seen, options: CaseOptions, progress: Progress | None = None
+    scenario: Scenario,
+    choice: LawChoice,
+    seen: RunFigures,
+    options: CaseOptions,
+    progress: Progress | None = None,
 ) -> Decided:
     """Decide every claim about one law; `seen` is what its run showed. Margins and samples come after it."""
-    tell = progress if progress is not None else _silent
+    tell = progress if progress is not None else silent
     law = choice.build()
     tell("V' as a polynomial", 0.0)
     claims = {claim.key: claim for claim in _algebraic_claims(scenario, law)}
@@ -138,7 +141,7 @@ def decide(
 
 def margins(scenario: Scenario, choice: LawChoice) -> tuple[Quantity, ...]:
     """How far schedule and lambda may change while convergence stays certified."""
-    question = floor_question(scenario, choice.build(), Seen(), search=False)
+    question = floor_question(scenario, choice.build(), RunFigures(), search=False)
     return tuple(convergence_margins(scenario, choice, partial(is_certified, question)))
 
 
@@ -165,7 +168,7 @@ def findings(decided: Decided, margins: tuple[Quantity, ...], sampled: Sampled) 
 
 def decided_claims(scenario: Scenario, law: Law) -> tuple[Claim, ...]:
     """Claims about one law that exact means decide, with their certificates; no samples, no simulation."""
-    found = answer(floor_question(scenario, law, Seen(), search=False))
+    found = answer(floor_question(scenario, law, RunFigures(), search=False))
     return (*_algebraic_claims(scenario, law), *found.claims)
 
 
@@ -185,10 +188,6 @@ def _add_torque(claims: dict[str, Claim], found: FloorAnswer) -> None:
         convergence = claims["convergence"]
         quantities = (*convergence.quantities, *torque_quantities(found.torque))
         claims["convergence"] = replace(convergence, quantities=quantities)
-
-
-def _silent(stage: str, fraction: float) -> None:
-    del stage, fraction
 
 
 def _filter_claims(scenario: Scenario, law: Law) -> Iterator[Claim]:

@@ -6,12 +6,11 @@ from dataclasses import dataclass
 from typing import Any, final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...verify.filter.certify import Floor
-from ...verify.filter.flowpipe import Box, Witness
+from ...models.types import Array
+from ...verify.filter.certify import FilterLowerBound
+from ...verify.filter.flowpipe import Box, Flowpipe
 
-Array = NDArray[np.float64]
 CELLS = 800
 """Cells of the grid from 0 to the horizon."""
 OUTWARD = 1 + 1e-12
@@ -44,15 +43,15 @@ class CertifiedCurves:
         return {name: f"{key}.{name}" for name in vars(self)}
 
 
-def certified_curves(floor: Floor, horizon: float) -> CertifiedCurves | None:
+def certified_curves(floor: FilterLowerBound, horizon: float) -> CertifiedCurves | None:
     """Put a certified floor's bounds on a grid; None if the certificate ends before the horizon."""
     if floor.horizon is not None and float(floor.horizon) < horizon:
         return None
     edges = np.linspace(0.0, horizon, CELLS + 1)
     floors, gaps, rates = np.full(CELLS, np.inf), np.zeros(CELLS), np.zeros(CELLS)
     period = float(floor.schedule.period) if floor.schedule.period is not None else 0.0
-    for witness in floor.witnesses:
-        for box, shift in _boxes(witness, period, horizon):
+    for flowpipe in floor.flowpipes:
+        for box, shift in _boxes(flowpipe, period, horizon):
             first = int(np.searchsorted(edges, box.start + shift, side="right")) - 1
             last = int(np.searchsorted(edges, box.stop + shift, side="left"))
             cells = slice(max(first, 0), min(last, CELLS))
@@ -65,10 +64,10 @@ def certified_curves(floor: Floor, horizon: float) -> CertifiedCurves | None:
     return CertifiedCurves(edges[:-1], floors, np.minimum(angle, 2 * np.pi), rates)
 
 
-def _boxes(witness: Witness, period: float, horizon: float) -> list[tuple[Box, float]]:
+def _boxes(flowpipe: Flowpipe, period: float, horizon: float) -> list[tuple[Box, float]]:
     """Boxes of the transient, and those of the tail in every later period up to the horizon."""
-    found = [(box, 0.0) for box in witness.boxes]
-    if witness.tail is not None and period > 0:
-        cycles = int(max(horizon - float(witness.tail.start), 0.0) / period) + 1
-        found += [(box, n * period) for n in range(cycles) for box in witness.tail_boxes]
+    found = [(box, 0.0) for box in flowpipe.boxes]
+    if flowpipe.tail is not None and period > 0:
+        cycles = int(max(horizon - float(flowpipe.tail.start), 0.0) / period) + 1
+        found += [(box, n * period) for n in range(cycles) for box in flowpipe.tail_boxes]
     return found

@@ -11,13 +11,13 @@ from ...verify.filter.certify import FloorOptions, certify_floor
 from ...verify.filter.claims import reaches_far_enough
 from ...verify.filter.question import FloorQuestion
 from ...verify.filter.worst_found import Search
-from ..simulated_run import Seen
+from ..simulated_run import RunFigures
 
 COARSE = FloorOptions(max_bins=1, max_periods=8)
 """A certificate that is cheap enough to be tried many times; one that it misses may still exist."""
 
 
-def floor_question(scenario: Scenario, law: Law, seen: Seen, *, search: bool) -> FloorQuestion:
+def floor_question(scenario: Scenario, law: Law, seen: RunFigures, *, search: bool) -> FloorQuestion:
     """Put a scenario's question about one law; what the run showed stands beside the answer."""
     bounds, limits = scenario.initial_set, scenario.limits
     return FloorQuestion(

@@ -19,11 +19,11 @@ from ...verify.verdict import Claim, Quantity
 
 Certified = Callable[[Law, Schedule], bool]
 
-MOST_MISSED = 8
+MAX_MISSED = 8
 """Windows in a row beyond which no further miss is tried."""
-LARGEST_GAP = 32
+MAX_GAP = 32
 """Times its length to which the longest gap is stretched at most."""
-LEAST_LAMBDA = Fraction(1, 16)
+MIN_LAMBDA = Fraction(1, 16)
 """Fraction of lambda below which no smaller lambda is tried."""
 
 
@@ -48,7 +48,7 @@ def convergence_margins(scenario: Scenario, choice: LawChoice, certified: Certif
         found = greatest_certified(
             lambda extra: certified(law, longer_gap(schedule, at, extra)),
             gap / 2,
-            limit=gap * LARGEST_GAP,
+            limit=gap * MAX_GAP,
             steps=3,
         )
         if found.certified:
@@ -56,7 +56,7 @@ def convergence_margins(scenario: Scenario, choice: LawChoice, certified: Certif
             yield longest.quantity(
                 "longest_gap_certified", "s", "longest gap between windows, certified up to"
             )
-        missed = most_certified(lambda n: certified(law, _missing(schedule, n)), MOST_MISSED)
+        missed = most_certified(lambda n: certified(law, _missing(schedule, n)), MAX_MISSED)
         label = "windows in a row that may be missed again and again"
         yield missed.quantity("missed_certified", "", label)
     shortest = min(w.length for w in schedule.windows)
@@ -83,7 +83,7 @@ def _least_lambda(choice: LawChoice, schedule: Schedule, certified: Certified) -
     found = greatest_certified(
         lambda drop: certified(choice.with_parameters(**{"lambda": given - drop}).build(), schedule),
         given / 2,
-        limit=given * (1 - LEAST_LAMBDA),
+        limit=given * (1 - MIN_LAMBDA),
         steps=2,
     )
     if found.certified:

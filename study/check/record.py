@@ -7,9 +7,9 @@ from fractions import Fraction
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...models.schedule import Schedule
+from ...models.types import Array
 from ...reports import parts
 from ...reports.provenance import provenance
 from ...reports.record import Record
@@ -21,7 +21,6 @@ from .case import Case
 from .run import CheckStudy
 from .storage_history import storage_history
 
-Array = NDArray[np.float64]
 SHOWN_WINDOWS = 2000
 """Windows that a record lists; of a longer table the first ones, with a note."""
 UNITS = {"lambda": "1/s", "gamma": "1/(kg m^2 s)", "R0": "s", "k0": "1/s", "a": "kg m^2/s^2"} | {

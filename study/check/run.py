@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import final
 
+from ...models.types import Progress, silent
 from ...scenario import Scenario
 from ...verify.linear.stability import stability_claim
 from ...verify.schedule.excitation import excitation_claim
@@ -15,8 +15,6 @@ from ..claims.counting import count, counted_keys, exit_code, sentence
 from ..simulated_run import run_law, seen_in
 from .case import Case, CaseOptions
 from .workers import crew
-
-Progress = Callable[[str, float], None]
 
 
 @final
@@ -81,7 +79,7 @@ def run_check(
         If the scenario asks for a claim that does not exist, or a law cannot be built.
     """
     options = options if options is not None else CheckOptions()
-    tell = progress if progress is not None else _silent
+    tell = progress if progress is not None else silent
     counted_keys(scenario)
     tell("schedule", 0.0)
     schedule = count(scenario_claims(scenario), scenario)
@@ -109,7 +107,3 @@ def scenario_claims(scenario: Scenario) -> tuple[Claim, ...]:
     facts = schedule_claims(choice.schedule, overruns_as_printed=choice.overruns_as_printed)
     plant = () if scenario.linear is None else (stability_claim(scenario.linear),)
     return (*facts, excitation_claim(choice.schedule, scenario.check.pe_window), *plant)
-
-
-def _silent(stage: str, fraction: float) -> None:
-    del stage, fraction

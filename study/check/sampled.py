@@ -21,7 +21,7 @@ from ...verify.sampling import (
     sample_derivative,
 )
 from ...verify.verdict import Claim, Verdict
-from ..simulated_run import Seen
+from ..simulated_run import RunFigures
 
 CERTIFIED_FLOOR = "certified_floor"
 """Name of the quantity of the claim "filter.floor" that is a certified floor of R."""
@@ -56,7 +56,7 @@ def sample_law(
     return interpret(function, scenario.body, samples, weight=weight, gain_target=target), ""
 
 
-def reference_floor(scenario: Scenario, law: Law, claim: Claim | None, seen: Seen) -> Fraction | None:
+def reference_floor(scenario: Scenario, law: Law, claim: Claim | None, seen: RunFigures) -> Fraction | None:
     """R_min for V's k* = 1/R_min and for the sampled domain, s.
 
     The certified floor where there is one; else the converged one (periodic schedules), which bounds

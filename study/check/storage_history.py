@@ -6,14 +6,12 @@ from fractions import Fraction
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
 from ...models.closed_loop import body_values
 from ...models.simulation import Trajectory
 from ...models.storage import weighted_storage
+from ...models.types import Array
 from ...verify.verdict import Claim, Verdict
-
-Array = NDArray[np.float64]
 
 
 def storage_history(

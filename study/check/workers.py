@@ -18,18 +18,17 @@ from queue import Empty, SimpleQueue
 from threading import Lock, current_thread, main_thread
 from typing import Any, final
 
+from ...models.types import Progress
 from ...scenario import LawChoice, Scenario
-from ..simulated_run import Seen
+from ..simulated_run import RunFigures
 from ..threads import one_thread_each
 from .case import CaseOptions, Decided, Findings, decide, findings, margins, samples
-
-Progress = Callable[[str, float], None]
 
 START = 0.1
 """Share of a check that is done before the jobs begin."""
 PARTS: dict[str, Callable[..., Any]] = {"proofs": decide, "margins": margins, "samples": samples}
 """Parts of a law's job, in the order in which they are best begun: the longer ones first."""
-PATIENCE = 0.5
+POLL_SECONDS = 0.5
 """Seconds after which a wait for the others is begun anew, so that an interrupt is noticed everywhere."""
 
 
@@ -49,7 +48,7 @@ class _Job:
 
 
 @final
-class Crew:
+class WorkerPool:
     """Carries out the jobs of several laws.
 
     A job may be handed over before the next one is known: other processes begin at once, this one in
@@ -63,7 +62,7 @@ class Crew:
         self._ready: list[tuple[int, int, tuple[Any, ...]]] = []
         self._lock, self._news = Lock(), SimpleQueue[BaseException | None]()
 
-    def add(self, scenario: Scenario, choice: LawChoice, seen: Seen, options: CaseOptions) -> None:
+    def add(self, scenario: Scenario, choice: LawChoice, seen: RunFigures, options: CaseOptions) -> None:
         """Hand over one law."""
         with self._lock:
             self._jobs.append(_Job(choice.label, scenario, choice))
@@ -80,7 +79,7 @@ class Crew:
                 self._feed()
                 continue
             try:
-                failure = self._news.get(timeout=PATIENCE)
+                failure = self._news.get(timeout=POLL_SECONDS)
             except Empty:
                 continue
             if failure is not None:
@@ -150,24 +149,24 @@ def _perform(part: str, arguments: Sequence[Any], tell: Progress | None = None) 
 
 
 @contextmanager
-def crew(jobs: int, workers: int, tell: Progress) -> Iterator[Crew]:
+def crew(jobs: int, workers: int, tell: Progress) -> Iterator[WorkerPool]:
     """A crew of `workers` processes, this one among them, for so many laws; leaving ends the others.
 
     The others are fresh processes: nothing is forked that holds a thread.
     """
     others = min(workers, jobs) - 1
     if others < 1:
-        yield Crew(None, 0, jobs, tell)
+        yield WorkerPool(None, 0, jobs, tell)
         return
     with one_thread_each():
-        with _deaf():  # new processes inherit it, so that an interrupt cannot reach them as they begin
+        with _ignore_sigint():  # new processes inherit it: no interrupt reaches them as they begin
             pool = get_context("spawn").Pool(others, initializer=ignore_interrupt)
         with pool:
-            yield Crew(pool, others, jobs, tell)
+            yield WorkerPool(pool, others, jobs, tell)
 
 
 @contextmanager
-def _deaf() -> Iterator[None]:
+def _ignore_sigint() -> Iterator[None]:
     """Ignore interrupts for a moment; only the main thread can."""
     if current_thread() is not main_thread():
         yield

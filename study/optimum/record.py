@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...models.types import Array
 from ...reports import parts
 from ...reports.provenance import provenance
 from ...reports.record import Record
@@ -15,8 +15,6 @@ from .run import Optimum, OptimumStudy
 
 if TYPE_CHECKING:
     from ...optim.peak import LeastImpulseFound, LeastTime, Switching, TorqueHistory
-
-Array = NDArray[np.float64]
 
 
 def optimum_record(study: OptimumStudy, *, date: str = "", author: str = "", command: str = "") -> Record:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Literal, final
 
+from ...models.types import Progress, silent
 from ...optim.norms import Euclidean, LargestComponent, Norm, ThrusterAxes
 from ...optim.problem import Terminal, TransferProblem, WindowProfile
 from ...scenario import Scenario
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from ...optim.peak.search.explain import Explanation
     from ...optim.peak.search.options import LocalSolver
 
-Progress = Callable[[str, float], None]
 NormKey = Literal["component", "euclidean", "thrusters"]
 SolverKey = Literal["auto", "fast", "reference"]
 INVERSION_ALLOWANCE = 1e-7
@@ -155,7 +154,7 @@ def run_optimum(
     from ...optim.peak.search.explain import explain
 
     options = options if options is not None else OptimumOptions()
-    tell = progress if progress is not None else _silent
+    tell = progress if progress is not None else silent
     table = scenario.optimum
     search = MultiStart(
         starts=table.starts if options.starts is None else options.starts,
@@ -297,7 +296,3 @@ def _solver(key: SolverKey) -> LocalSolver | None:
     if key == "auto":
         return None
     return SequentialConvex() if key == "fast" else NonlinearProgram()
-
-
-def _silent(stage: str, fraction: float) -> None:
-    del stage, fraction

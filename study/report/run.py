@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from multiprocessing import get_context
 from typing import final
 
+from ...models.types import Progress, silent
 from ...reports.join import join
 from ...reports.record import Record
 from ...reports.values import thaw
@@ -16,8 +17,6 @@ from ..check.record import check_record
 from ..check.run import CheckOptions, CheckStudy, run_check
 from ..check.workers import ignore_interrupt
 from ..threads import one_thread_each
-
-Progress = Callable[[str, float], None]
 
 
 @final
@@ -59,7 +58,7 @@ def run_report(
         If the scenario cannot be checked as it asks.
     """
     options = options if options is not None else ReportOptions()
-    tell = progress if progress is not None else _silent
+    tell = progress if progress is not None else silent
     command = f"intermit report {scenario.path.name}"
     check = run_check(scenario, options.check, _part(tell, 0.0, 0.4))
     if checked is not None:
@@ -126,7 +125,3 @@ def _audit(check: Record) -> Record:
 
 def _part(tell: Progress, start: float, end: float) -> Progress:
     return lambda stage, fraction: tell(stage, start + (end - start) * fraction)
-
-
-def _silent(stage: str, fraction: float) -> None:
-    del stage, fraction

@@ -61,7 +61,7 @@ def test_what_does_not_shrink_is_not_scaled_down():
         max_angle_deg=F(350),
         max_weighted_rate=F(0),
     )
-    (witness,) = answer(q).floor.witnesses
+    (witness,) = answer(q).floor.flowpipes
     assert set(witness.tail.given_up) == {"s", "y"}
     parts = len(witness.tail_boxes) // len(witness.tail.steps)
     for step, box in zip(witness.tail.steps, witness.tail_boxes[::parts], strict=True):

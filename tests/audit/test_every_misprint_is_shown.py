@@ -37,7 +37,7 @@ def test_counterexample_of_the_update_law_follows_by_hand(items):
     assert violation.low <= expected <= violation.high
 
 
-def test_printed_update_turns_the_attitude_over_and_the_corrected_one_does_not():
+def test_only_the_printed_update_turns_the_attitude_over():
     def final(law):
         return simulate(
             law, J1, paper_schedule(), quaternion=np.full(4, 0.5), rate=np.zeros(3), horizon=F(56)

@@ -99,7 +99,7 @@ def test_a_bound_speaks_of_the_inertia_as_stated(tmp_path, capsys):
     assert "EQUAL" in capsys.readouterr().out
 
 
-def test_optimum_writes_every_norm_and_the_record_says_how_to_recheck(tmp_path, capsys):
+def test_optimum_writes_each_norm_and_how_to_recheck_it(tmp_path, capsys):
     toml, file, record = scenario(tmp_path), tmp_path / "o.json", tmp_path / "r.json"
     command = ["optimum", str(toml), "--starts", "1", "--norm", "euclidean", "--json", str(record)]
     assert run([*command, "--certificate", str(file)]) == 0

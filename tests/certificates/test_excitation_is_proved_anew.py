@@ -24,7 +24,7 @@ def valid(text):
     ("schedule", "length"),
     [(paper_schedule(), F(8)), (paper_schedule(), F(5)), (paper_schedule(), F("17.3")), (TABLE, F(6))],
 )
-def test_enclosed_integrals_are_accepted_and_tighter_ones_refused(schedule, length):
+def test_enclosed_integrals_pass_and_tighter_ones_are_refused(schedule, length):
     text = certificate_text([excitation_certificate(schedule, length)])
     assert valid(text)
     for name, sign in (("least", 1), ("greatest", -1)):
@@ -39,7 +39,7 @@ def test_one_period_holds_the_same_integral_from_every_start():
     assert claim["least"] == claim["greatest"] == paper_schedule().square_integral(F(0), F(8))
 
 
-def test_an_interval_that_fits_into_a_zero_run_has_no_certificate():
+def test_an_interval_within_a_zero_run_has_no_certificate():
     run = longest_zero_run(paper_schedule())
     assert excitation_certificate(paper_schedule(), run.length) is None
     assert excitation_certificate(paper_schedule(), run.length + F(1, 10)) is not None

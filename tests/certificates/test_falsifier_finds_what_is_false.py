@@ -42,7 +42,7 @@ def check_sharp(law, body):
 
 @pytest.mark.parametrize("body", [cases.J1, cases.J2])
 @pytest.mark.parametrize("law", [cases.persistence, cases.adaptive])
-def test_finds_a_violation_at_0_999_of_sharp_and_none_from_it_on(law, body):
+def test_violation_found_at_0_999_of_sharp_and_none_above(law, body):
     check_sharp(law, body)
 
 

@@ -93,7 +93,7 @@ def test_signals_at_values_that_never_occur_refute_nothing():
     assert verdict(law) is Verdict.UNDECIDED
 
 
-def test_a_law_that_lies_about_the_rate_of_its_gain_is_judged_by_its_torque():
+def test_a_false_gain_rate_is_judged_by_the_torque():
     @dataclass(frozen=True)
     class Lying(Law):
         name: ClassVar[str] = "lying"

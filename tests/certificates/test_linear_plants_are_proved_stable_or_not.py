@@ -60,7 +60,7 @@ def test_a_stabilised_oscillator_is_proved():
     assert claim.quantities[0].high < 1
 
 
-def test_an_oscillator_left_alone_is_refuted_with_a_growing_direction():
+def test_a_free_oscillator_is_refuted_with_a_growing_direction():
     claim = stability_claim(plant([[0, 1], [-1, 0.05]], [[0], [1]], [[0, 0.05]]))
     assert claim.verdict is Verdict.REFUTED
     assert claim.witness.violation.low > 0

@@ -115,7 +115,7 @@ def test_best_weight_beats_its_neighbours():
     assert dissipation(a) >= max(dissipation(a * 1.01), dissipation(a * 0.99))
 
 
-def test_inertia_box_is_proved_whole_and_refuted_where_it_reaches_too_low():
+def test_inertia_box_is_proved_whole_or_refuted_at_a_vertex():
     law = cases.persistence("0.525")
     narrow = verdicts(law, cases.J1, tolerance=cases.tolerance("0.02"))
     assert narrow["lyapunov.derivative"].verdict is Verdict.PROVED
@@ -165,7 +165,7 @@ def test_a_users_law_that_is_unstable_is_refuted():
     assert claim.witness.violation.low > 0
 
 
-def test_a_sign_that_needs_the_range_of_g_is_proved_for_the_schedule_only():
+def test_a_sign_needing_the_range_of_g_holds_for_the_schedule():
     law = cases.PlainDamping(F("0.3"))
     (claim,) = lyapunov_claims(law, cases.J1)
     assert claim.verdict is Verdict.UNDECIDED
@@ -210,7 +210,7 @@ def test_negative_directions_are_exact():
     assert any(x)
 
 
-def test_rational_points_lie_on_their_spheres_near_the_given_ones():
+def test_rational_points_lie_on_spheres_near_the_given_ones():
     rng = np.random.default_rng(5)
     for _ in range(50):
         q = rng.normal(size=4)

@@ -121,7 +121,7 @@ def test_a_subclass_with_other_equations_loses_the_proof(kind):
 
 
 @pytest.mark.parametrize("kind", [NoLearning, SignOfTheTerm])
-def test_an_adaptive_subclass_with_another_update_loses_the_proof(kind):
+def test_an_adaptive_law_with_another_update_loses_the_proof(kind):
     law = kind(ADAPTIVE.lambda_, ADAPTIVE.gamma, ADAPTIVE.R0, ADAPTIVE.k0, ADAPTIVE.a)
     assert comparison_system(law, BodyBounds.of(J1)) is None
 
@@ -145,7 +145,7 @@ class Sawn(Adaptive):
         return (ControllerState("R", self.R0, "s"), ControllerState("k", self.more, "1/s"))
 
 
-def test_a_state_that_starts_elsewhere_than_its_parameter_says_loses_the_proof():
+def test_a_state_starting_off_its_parameter_loses_the_proof():
     at = (ADAPTIVE.lambda_, ADAPTIVE.gamma, ADAPTIVE.R0, ADAPTIVE.k0, ADAPTIVE.a)
     assert recognise(Sawn(*at, more=ADAPTIVE.k0)).kind == "adaptive-scaling"
     assert "k0" in recognise(Sawn(*at, more=ADAPTIVE.k0 + 1)).reason
@@ -172,7 +172,7 @@ def test_a_label_that_the_program_does_not_bear_out_is_refused(derivative_file, 
     assert "but its program is adaptive-scaling" in finding.reason
 
 
-def test_a_law_known_by_name_alone_is_compared_with_the_equations_of_that_name():
+def test_a_bare_name_is_compared_by_its_equations():
     own, adaptive = recognise(PERSISTENCE).form, recognise(ADAPTIVE).form
     named = {"name": "persistence-filter"}
     assert _same_law(named, own)
@@ -180,7 +180,7 @@ def test_a_law_known_by_name_alone_is_compared_with_the_equations_of_that_name()
     assert not _same_law(own, adaptive | {"name": "persistence-filter"})
 
 
-def test_a_window_that_is_open_across_the_wrap_is_no_counterexample():
+def test_an_open_window_at_the_wrap_is_no_counterexample():
     data = {
         "schedule": {"knots": ["0", "2", "8"], "shapes": [["1"]], "pieces": ["0", "0"], "period": "8"},
         "windows": [["0", "2"]],

@@ -47,7 +47,7 @@ def valid(text):
 
 
 @pytest.mark.parametrize("schedule", [INSIDE, OVERRUNS, TABLE, JUMPS])
-def test_every_decided_fact_has_a_certificate_that_says_the_same(schedule):
+def test_every_decided_fact_has_a_matching_certificate(schedule):
     for key, (verdict, certificate) in certificates(schedule).items():
         assert certificate is not None, key
         assert (certificate.kind == "schedule-counterexample") == (verdict is Verdict.REFUTED)

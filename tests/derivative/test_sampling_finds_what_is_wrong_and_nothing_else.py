@@ -60,9 +60,7 @@ def sampled(chosen: Law, sampling: Sampling = FEW) -> tuple[DerivativeSamples, S
 
 @pytest.mark.parametrize("kind", [PersistenceFilter, AdaptiveScaling])
 @pytest.mark.parametrize("factor", [1.001, 1.54])
-def test_above_the_sharp_condition_nothing_is_found_and_the_margin_is_the_exact_one(
-    kind: type[Law], factor: float
-) -> None:
+def test_above_sharp_nothing_is_found_and_the_margin_is_exact(kind: type[Law], factor: float) -> None:
     samples, said = sampled(law(kind, factor * SHARP))
     assert samples.violations == samples.bound_violations == 0
     assert said.sign_witness is None
@@ -74,14 +72,14 @@ def test_above_the_sharp_condition_nothing_is_found_and_the_margin_is_the_exact_
 
 
 @pytest.mark.parametrize("kind", [PersistenceFilter, AdaptiveScaling])
-def test_just_below_the_sharp_condition_a_state_is_found_and_confirmed(kind: type[Law]) -> None:
+def test_just_below_sharp_a_state_is_found_and_confirmed(kind: type[Law]) -> None:
     _, said = sampled(law(kind, 0.999 * SHARP))
     assert said.sign_witness is not None
     assert said.sign_witness.violation.low > 0
 
 
 @pytest.mark.parametrize("kind", [AdaptiveScalingAsPrinted, PersistenceFilterAsPrinted])
-def test_printed_laws_are_refuted_though_lambda_meets_the_papers_condition(kind: type[Law]) -> None:
+def test_printed_laws_are_refuted_under_the_papers_lambda(kind: type[Law]) -> None:
     samples, said = sampled(law(kind, 0.525))
     assert samples.violations > 0
     assert said.sign_witness is not None

@@ -61,7 +61,7 @@ def test_metrics_agree(law):
             assert np.isnan(found.filter_minimum[i])
 
 
-def test_a_run_at_the_target_has_settled_at_its_start_and_one_too_short_never():
+def test_settled_at_the_start_at_target_and_never_if_short():
     starts = np.array([[1.0, 0, 0, 0, 0, 0, 0], [0.6, 0.8, 0, 0, 0, 0, 0]])
     found = simulate_ensemble(LAWS[1], BODY, SCHEDULE, starts, horizon=Fraction(2), metrics=OPTIONS).metrics
     assert found.settling_time[0] == 0.0

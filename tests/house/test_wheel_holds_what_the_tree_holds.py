@@ -55,7 +55,7 @@ def wheel(checkout: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.slow
-def test_every_module_and_data_file_is_in_the_wheel_and_nothing_else(checkout: Path, wheel: Path) -> None:
+def test_the_wheel_holds_every_file_and_nothing_else(checkout: Path, wheel: Path) -> None:
     names = zipfile.ZipFile(wheel).namelist()
     inside = {n.removeprefix("intermit/") for n in names if n.startswith("intermit/")}
     tracked = source_files(checkout)

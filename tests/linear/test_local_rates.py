@@ -50,7 +50,7 @@ def test_the_exponents_are_double_and_defective():
     assert np.linalg.matrix_rank(shifted, tol=1e-7) == 3
 
 
-def test_the_adaptive_scaling_decays_at_its_gain_times_the_mean_square():
+def test_adaptive_scaling_decays_at_gain_times_mean_square():
     for k in (0.2, 1.5):
         rates = local_rates(ADAPTIVE, J1, PAPER, controller_states={"k": k})
         assert rates.controller_states["k"] == pytest.approx(k, rel=1e-12)

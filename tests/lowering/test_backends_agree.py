@@ -71,7 +71,7 @@ def test_sharing_saves_operations_and_keeps_every_bit():
     assert np.array_equal(*both)
 
 
-def test_division_by_a_power_of_two_becomes_a_product_and_keeps_every_bit():
+def test_division_by_a_power_of_two_keeps_every_bit():
     x = ca.SX.sym("x", 3)
     function = ca.Function("f", [x], [x / 4, x / -0.5, x / 3, x / 5e-324, x / 2.0**1023])
     program = shared(walk(function))
@@ -83,7 +83,7 @@ def test_division_by_a_power_of_two_becomes_a_product_and_keeps_every_bit():
         assert found.tobytes() == np.ascontiguousarray(np.array(truth)).tobytes()
 
 
-def test_the_block_keeps_the_buffers_in_the_cache_and_no_result_depends_on_it():
+def test_block_size_fits_the_cache_and_changes_no_result():
     loop = close_loop(LAWS[0])
     program = shared(walk(loop.function("rates", loop.state_rate)))
     chosen = ArrayFunction(program, uniform=(2, 3))

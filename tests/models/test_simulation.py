@@ -132,7 +132,7 @@ def test_saturation_holds_and_changes_the_run():
     assert np.linalg.norm(euclidean.signals(t).applied_torque, axis=0).max() <= 3 + 1e-12
 
 
-def test_escape_under_tight_saturation_is_an_error_that_names_the_state():
+def test_escape_under_saturation_is_an_error_naming_the_state():
     """With the torque held at 0.5 N m the adaptive gain runs away like k' ~ k^2."""
     with pytest.raises(SimulationError, match=r"stopped at t = 9\.78.* k = "):
         run(ADAPTIVE, saturation=Saturation(F("0.5")))

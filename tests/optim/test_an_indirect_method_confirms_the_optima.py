@@ -46,10 +46,10 @@ class Extremal:
         b0, bv, w, l0, lv = y[0], y[1:4], y[4:7], y[7], y[8:11]
         sigma = self.J_inverse @ y[11:14]
         momentum = self.J @ w
-        torque, worth = np.zeros(3), 0.0
+        torque, size_of_gain = np.zeros(3), 0.0
         if p > 0:
             size = np.sqrt(sigma @ sigma)
-            torque, worth = (p * sigma / size, size) if self.euclidean else (p * signs, signs @ sigma)
+            torque, size_of_gain = (p * sigma / size, size) if self.euclidean else (p * signs, signs @ sigma)
         spin = self.J_inverse @ (torque - cross(w, momentum))
         by_w = (b0 * lv - l0 * bv + cross(lv, bv)) / 2 - cross(momentum, sigma) - self.J @ cross(sigma, w)
         return np.concatenate(
@@ -60,7 +60,7 @@ class Extremal:
                 [-(lv @ w) / 2],
                 -(cross(w, lv) - l0 * w) / 2,
                 -by_w,
-                [worth],
+                [size_of_gain],
             ]
         )
 
@@ -133,7 +133,7 @@ def on_equal_cells(problem, cells):
 
 
 @pytest.mark.parametrize("norm", NORMS, ids=lambda norm: norm.name)
-def test_the_extremal_is_the_refined_optimum_and_not_the_ten_cell_one(norm):
+def test_extremal_equals_the_refined_optimum_only(norm):
     problem = paper_transfer(norm)
     answer = minimum_peak(problem, search=ONE)
     extremal = Extremal(problem)

@@ -13,8 +13,8 @@ from intermit.optim.peak import (
     Refinement,
     SequentialConvex,
     Standing,
-    fly_again,
     minimum_peak,
+    replay,
 )
 from intermit.optim.peak.search.guess import first_guess
 from intermit.optim.peak.transcription.mesh import build_mesh
@@ -41,13 +41,13 @@ def test_a_good_history_is_feasible(answer):
 
 def test_a_torque_slightly_off_is_caught(answer):
     off = replace(answer.history, control=answer.history.control * (1 + 1e-6))
-    assert not fly_again(answer.problem, off).feasible
+    assert not replay(answer.problem, off).feasible
 
 
 def test_torque_outside_the_windows_is_caught(answer):
     control = answer.history.control.copy()
     control[~answer.history.open] = 1e-9
-    flown = fly_again(answer.problem, replace(answer.history, control=control))
+    flown = replay(answer.problem, replace(answer.history, control=control))
     assert flown.outside_torque == pytest.approx(1e-9)
     assert not flown.feasible
 

@@ -51,11 +51,11 @@ def tumbling(norm=None, *, time=1, size=1, **changes):
     return replace(problem, body=body, window=window, rate=rate)
 
 
-def test_six_one_sided_thrusters_make_the_largest_components_optimum():
+def test_six_thrusters_equal_the_largest_component():
     assert peak(tumbling(AXES)) == pytest.approx(peak(tumbling(LargestComponent())), rel=2e-5)
 
 
-def test_a_thruster_less_never_lowers_the_force_and_thrust_is_one_sided():
+def test_removing_a_thruster_never_lowers_the_force():
     answer = minimum_peak(paper_transfer(TETRAHEDRON, horizon="11.22"), search=ONE, refinement=ROUGH)
     force = answer.history.control
     assert force.min() >= 0.0
@@ -67,7 +67,7 @@ def test_a_thruster_less_never_lowers_the_force_and_thrust_is_one_sided():
 
 
 @pytest.mark.parametrize("norm", [Euclidean(), LargestComponent(), TETRAHEDRON], ids=lambda n: n.name)
-def test_the_profile_g_costs_more_than_the_full_window_and_is_followed(norm):
+def test_profile_g_costs_more_than_the_full_window(norm):
     """W = g <= 1 with the same support, so that every torque within p g is within p."""
     full = peak(tumbling(norm))
     answer = minimum_peak(tumbling(norm, profile=WindowProfile.GAIN), search=ONE, refinement=ROUGH)
@@ -91,7 +91,7 @@ def test_the_cheaper_quaternion_sign_is_chosen(flip):
     assert answer.sign == min(each, key=each.get)
 
 
-def test_the_optimum_of_a_tumbling_start_scales_with_inertia_and_with_time():
+def test_tumbling_optimum_scales_with_inertia_and_time():
     base = peak(tumbling())
     assert peak(tumbling(size=Fraction(7, 3))) == pytest.approx(base * 7 / 3, rel=1e-8)
     assert peak(tumbling(time=Fraction(13))) == pytest.approx(base / 169, rel=1e-8)

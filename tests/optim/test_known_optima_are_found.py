@@ -79,7 +79,7 @@ def test_peak_scales_with_inertia_and_with_time(norm):
     assert peak(Fraction(1), Fraction(13)) == pytest.approx(base / 169, rel=1e-8)
 
 
-def test_turning_the_body_frame_leaves_the_euclidean_optimum_alone():
+def test_euclidean_optimum_is_invariant_under_rotation():
     from intermit.models.rigid_body import RigidBody
 
     turn = np.linalg.qr(np.random.default_rng(5).normal(size=(3, 3)))[0]

@@ -15,9 +15,9 @@ from intermit.optim.peak import (
     Refinement,
     SequentialConvex,
     Standing,
-    fly_again,
     minimum_impulse,
     minimum_peak,
+    replay,
 )
 from intermit.optim.peak.check.switching import switching_function
 from intermit.optim.peak.search.guess import first_guess
@@ -118,7 +118,7 @@ def test_random_transfers_meet_the_standard(number):
     least = minimum_impulse(problem, 1.5 * peak.peak, search=ONE, refinement=ROUGH)
     assert least.found
     assert least.answer.standing is Standing.CHECKED, least.answer.reason
-    again = fly_again(problem, least.answer.history)
+    again = replay(problem, least.answer.history)
     assert again.feasible
     assert least.answer.peak <= least.limit
     assert least.impulse <= peak.impulse * (1 + 1e-6)
@@ -148,13 +148,13 @@ def test_the_gap_and_the_residual_catch_a_transfer_that_wastes(norm):
     shooting = Shooting(scale(problem), mesh, 1)
     wasteful = SequentialConvex().solve(shooting, first_guess(shooting))
     goal = LeastImpulse(1.5 * wasteful.peak)
-    best = SequentialConvex().solve(shooting, wasteful.flight.control, goal=goal)
+    best = SequentialConvex().solve(shooting, wasteful.trajectory.control, goal=goal)
     assert best.converged
-    value = goal.value(shooting, wasteful.flight.control)
+    value = goal.value(shooting, wasteful.trajectory.control)
     assert best.value < 0.95 * value
-    dual, _ = goal.dual(shooting, wasteful.flight, wasteful.sensitivity, best.multiplier)
+    dual, _ = goal.dual(shooting, wasteful.trajectory, wasteful.sensitivity, best.multiplier)
     assert (value - dual) / value > 0.01
     true = switching_function(best).pontryagin_residual
-    false = switching_function(replace(best, flight=wasteful.flight, value=value)).pontryagin_residual
+    false = switching_function(replace(best, trajectory=wasteful.trajectory, value=value)).pontryagin_residual
     assert 0 <= true < 0.02
     assert false > 2 * true + 0.02

@@ -14,7 +14,7 @@ ONE = MultiStart(starts=1)
 ROUGH = Refinement(mesh_gap=1e-5)
 
 
-def test_unit_inertia_needs_the_square_root_of_four_angle_over_limit():
+def test_unit_inertia_needs_sqrt_of_four_angle_over_limit():
     problem = open_transfer(1.2, (1, 2, 2), Fraction(9), Euclidean())
     found = minimum_time(problem, 0.3, search=ONE, refinement=ROUGH)
     assert found.answer.standing is Standing.CHECKED
@@ -24,7 +24,7 @@ def test_unit_inertia_needs_the_square_root_of_four_angle_over_limit():
 
 
 @pytest.mark.slow
-def test_half_turn_in_the_unit_cube_takes_bilimoria_and_wies_time():
+def test_half_turn_in_the_unit_cube_takes_the_published_time():
     problem = open_transfer(math.pi, (0, 0, 1), Fraction(5), LargestComponent())
     found = minimum_time(
         problem, 1.0, search=MultiStart(starts=4), refinement=ROUGH, resolution=Fraction(1, 10**4)

@@ -13,7 +13,7 @@ from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import Hermite, Window, build_schedule
 from intermit.models.simulation import settling_time, simulate, torque_metrics
 from intermit.optim.norms import Euclidean, LargestComponent
-from intermit.optim.peak import MultiStart, Refinement, Standing, fly_torque, minimum_peak
+from intermit.optim.peak import MultiStart, Refinement, Standing, minimum_peak, replay_torque
 from intermit.optim.problem import Terminal, TransferProblem, WindowProfile, quaternion_from_axis_angle
 from problems import ADAPTIVE, J1, PERSISTENCE, TILTED, paper_schedule
 from transfers import paper_transfer
@@ -102,7 +102,7 @@ def test_a_law_never_beats_the_optimum_on_its_own_terms(law, norm, profile):
         profile=profile,
     )
     knots = [float(k) for k in paper_schedule().knots_between(Fraction(0), horizon)]
-    flown = fly_torque(problem, lambda t: run.signals(t).applied_torque.T, knots=knots)
+    flown = replay_torque(problem, lambda t: run.signals(t).applied_torque.T, knots=knots)
     assert flown.feasible(terminal=1e-6, torque=1e-9)
     if profile is WindowProfile.FULL:
         metrics = torque_metrics(run)
@@ -112,5 +112,5 @@ def test_a_law_never_beats_the_optimum_on_its_own_terms(law, norm, profile):
     assert answer.standing is Standing.CHECKED, answer.reason
     assert answer.peak < flown.peak
     # the check must bite: half of the law's torque does not make the transfer
-    half = fly_torque(problem, lambda t: 0.5 * run.signals(t).applied_torque.T, knots=knots)
+    half = replay_torque(problem, lambda t: 0.5 * run.signals(t).applied_torque.T, knots=knots)
     assert not half.feasible(terminal=1e-6)

@@ -122,7 +122,7 @@ def test_a_question_within_a_limit_needs_a_limit(tmp_path, capsys, question):
     assert "optimum.torque_limit" in capsys.readouterr().err
 
 
-def test_the_sentence_tells_a_limit_not_met_from_a_peak_not_found(tmp_path, capsys):
+def test_limit_not_met_is_told_from_peak_not_found(tmp_path, capsys):
     path = scenario(tmp_path, more="torque_limit = 0.06\nstarts = 1")
     assert run(["optimum", str(path), "--norm", "component", "--no-bound"]) == 3
     said = capsys.readouterr().out

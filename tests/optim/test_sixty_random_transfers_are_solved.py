@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from intermit.optim.peak import MultiStart, Standing, fly_again, minimum_peak
+from intermit.optim.peak import MultiStart, Standing, minimum_peak, replay
 from transfers import random_transfer
 
 
@@ -18,7 +18,7 @@ def test_sixty_random_transfers_are_solved(decade):
             assert answer.next_step
             undecided.append((number, answer.reason))
             continue
-        again = fly_again(answer.problem, answer.history)
+        again = replay(answer.problem, answer.history)
         assert again.terminal_excess <= 1e-8
         assert answer.optimality_gap <= 1e-6
         assert answer.peak == answer.history.peak

@@ -44,12 +44,12 @@ def test_bang_bang_turn_switches_once_at_half_time():
 def test_switching_function_is_the_derivative_of_the_end(norm):
     """sigma integrated over a cell is the change of y . residual by that cell's control, by differences."""
     answer = solved(paper_transfer(norm, horizon="11.22"), 5)
-    shooting, flight, y = answer.shooting, answer.flight, answer.multiplier
+    shooting, trajectory, y = answer.shooting, answer.trajectory, answer.multiplier
     step = 1e-5 * answer.peak
     for cell, j in ((0, 0), (4, 1), (7, 2)):
         ends = []
         for sign in (1, -1):
-            control = flight.control.copy()
+            control = trajectory.control.copy()
             control[cell, j] += sign * step
             unclipped = shooting.fly(control)
             ends.append(y @ unclipped.residual)
@@ -66,13 +66,13 @@ def test_switching_function_is_the_derivative_of_the_end(norm):
 
 
 @pytest.mark.parametrize("norm", [Euclidean(), LargestComponent(), TETRAHEDRON])
-def test_residual_falls_with_the_mesh_and_catches_a_wrong_control(norm):
+def test_residual_falls_with_the_mesh_and_shows_wrong_control(norm):
     answers = [solved(paper_transfer(norm, horizon="19.22"), n) for n in (4, 16)]
     residuals = [switching_function(a).pontryagin_residual for a in answers]
     assert 0 <= residuals[1] < residuals[0] / 4
     assert residuals[1] < 1e-3
     fine = answers[1]
-    wrong = replace(fine, flight=replace(fine.flight, control=fine.flight.control[::-1].copy()))
+    wrong = replace(fine, trajectory=replace(fine.trajectory, control=fine.trajectory.control[::-1].copy()))
     assert switching_function(wrong).pontryagin_residual > 0.05
     # normalised: the integral of w support(sigma) is one
     sigma = switching_function(fine)
@@ -103,7 +103,7 @@ def test_costates_obey_their_own_equation_on_a_free_arc():
     """Rate costates between windows, against differences of the flow: y . residual is constant along it."""
     problem = paper_transfer(LargestComponent(), horizon="11.22")
     answer = solved(problem, 8)
-    flown, y = answer.flight, answer.multiplier
+    flown, y = answer.trajectory, answer.multiplier
     arc = int(np.flatnonzero(~answer.shooting.mesh.open)[1])
     first, second = (y @ answer.sensitivity.adjoint[k] for k in (arc, arc + 1))
     rng = np.random.default_rng(4)

@@ -41,7 +41,7 @@ def test_evaluation_agrees_with_an_accurate_run():
         assert (excess <= 0) == (run.figures.settling is not None and run.figures.settling <= SETTLE)
 
 
-def test_same_seed_same_search_and_the_answer_is_the_least_that_settles():
+def test_search_repeats_by_seed_and_returns_the_least():
     space = SearchSpace.around(ADAPTIVE)
 
     def bowl(candidates):

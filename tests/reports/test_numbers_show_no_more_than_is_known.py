@@ -69,7 +69,7 @@ def test_an_invented_digit_would_be_noticed() -> None:
     assert write(quantity("q", 0.01187, 0.01198)).ascii == "0.0119"
 
 
-def test_an_enclosure_across_a_rounding_edge_is_shown_as_an_interval() -> None:
+def test_enclosure_across_a_rounding_edge_is_an_interval() -> None:
     assert write(quantity("q", 0.134441, 0.134559, rigorous=True)).ascii == "[0.13444, 0.13456]"
     assert write(quantity("q", 25.0275, 25.0525)).ascii == "25.0"
 

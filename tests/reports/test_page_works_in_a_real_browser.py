@@ -88,7 +88,7 @@ def test_the_answer_is_on_the_first_screen(visit: Visit) -> None:
         assert box["y"] + box["height"] < 900
 
 
-def test_a_drag_zooms_its_figure_and_its_neighbour_and_a_double_click_returns(visit: Visit) -> None:
+def test_drag_zooms_neighbours_and_double_click_returns(visit: Visit) -> None:
     before = x_range(visit, "torque-1")
     box = plot(visit, "torque-1").locator(".nsewdrag").bounding_box()
     mouse = visit.page.mouse
@@ -139,7 +139,7 @@ def test_the_legend_hides_a_line(visit: Visit) -> None:
     )
 
 
-def test_the_theme_button_changes_page_and_figures_and_keeps_the_zoom(visit: Visit) -> None:
+def test_theme_button_changes_figures_and_keeps_the_zoom(visit: Visit) -> None:
     visit.page.evaluate(
         "Plotly.relayout(document.querySelector('#figure-torque-1 .plot'), {'xaxis.range': [1, 9]})"
     )

@@ -59,9 +59,7 @@ def test_every_number_of_the_record_is_in_the_text(record: Record, document: byt
         assert squeezed(write(q, unit=False).text) in text, q
 
 
-def test_the_first_page_has_title_answer_date_hash_contents_and_verdicts(
-    record: Record, document: bytes
-) -> None:
+def test_first_page_has_title_answer_hash_and_verdicts(record: Record, document: bytes) -> None:
     first = squeezed(pages(document)[0])
     for words in (
         record.document["title"],
@@ -115,7 +113,7 @@ def test_hostile_names_are_set_as_text(record: Record) -> None:
     assert "‹RLO›" in text
 
 
-def test_ten_thousand_characters_stand_whole_once_and_short_elsewhere(record: Record) -> None:
+def test_long_names_stand_whole_once_and_short_elsewhere(record: Record) -> None:
     names = (*["quiet"] * 50, HOSTILE["long"])
     text = pages(pdf_of(respoken(record, *names)))
     start = next(i for i, page in enumerate(text) if "Names in full" in page and i > 0)

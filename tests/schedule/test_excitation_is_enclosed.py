@@ -111,7 +111,7 @@ def test_screening_changes_nothing(seed, monkeypatch):
     schedule = irregular(seed, 60, period=True)
     length = F("1.2") * default_length(schedule)
     exact = excitation(schedule, length)
-    monkeypatch.setattr(module, "LARGEST_EXACT", 0)
+    monkeypatch.setattr(module, "MAX_EXACT", 0)
     monkeypatch.setattr("intermit.verify.schedule.excitation_screen.FEW", 1)
     screened = excitation(schedule, length)
     assert screened.exact_segments < exact.exact_segments / 4
@@ -123,7 +123,7 @@ def test_screening_changes_nothing(seed, monkeypatch):
 
 def test_equal_windows_are_decided_once(monkeypatch):
     """Counted: a table of equal windows needs no more exact polynomials than a short one."""
-    monkeypatch.setattr(module, "LARGEST_EXACT", 0)
+    monkeypatch.setattr(module, "MAX_EXACT", 0)
     few, many = (excitation(paper(windows=n), F(6)) for n in (20, 200))
     assert many.segments > 9 * few.segments
     assert many.exact_segments <= few.exact_segments

@@ -126,7 +126,7 @@ def test_a_jump_is_found_where_it_is(i, shape, what, time):
     assert claim.witness.values["time"] == time
 
 
-def test_a_finite_table_must_end_at_rest_but_a_period_may_run_on():
+def test_a_finite_table_ends_at_zero_but_a_period_need_not():
     """g = 1 throughout is C1 if it repeats for ever, and jumps at the end of a finite table."""
     profile = PiecewisePolynomial((F(0), F(4)), (polynomial(1),))
     windows = (Window(F(0), F(4)),)

@@ -40,7 +40,7 @@ def test_what_the_sequence_does_not_have_is_refused():
         Sampling(count=2**30 + 1)
 
 
-def test_states_are_unit_quaternions_in_the_stated_box_even_where_the_half_angle_is_right():
+def test_states_are_unit_quaternions_in_the_stated_box():
     cube = np.random.default_rng(2).random((DOMAIN.dimension, 4096))
     cube[1, :3], cube[2, :3] = 0.5, [0.0, 0.5, np.nextafter(1, 0)]
     states = DOMAIN.states(cube.T)

@@ -37,7 +37,7 @@ def test_importing_the_package_loads_nothing_heavy():
     assert "numpy" in modules_after("import intermit.models.ensemble")  # the probe sees what is there
 
 
-def test_simulating_loads_no_solver_no_plotting_and_no_optional_backend():
+def test_simulating_loads_no_solver_plotting_or_backend():
     loaded = modules_after(
         "import intermit.models.ensemble, intermit.models.lowering, intermit.models.linear"
     )
@@ -79,7 +79,7 @@ def jittered(count):
     return build_schedule(windows, Hermite())
 
 
-def test_excitation_decides_few_pieces_in_rationals_however_many_tie():
+def test_excitation_decides_few_tied_pieces_in_rationals():
     """Unequal gaps make many intervals that hold the same whole windows: ties, each counted once."""
     result = excitation(jittered(600), Fraction(20))
     assert result.segments > 4000

@@ -75,7 +75,7 @@ def test_a_torque_limit_that_the_run_exceeds_is_refuted(
         assert (claim["witness"] is None) == (verdict == "UNDECIDED")
 
 
-def test_smaller_lambda_refutes_the_sign_of_v_but_not_the_convergence_of_the_laws(
+def test_small_lambda_refutes_the_sign_of_v_not_convergence(
     intermit: Run, write_scenario: Write, tmp_path: Path
 ) -> None:
     out = tmp_path / "found.json"
@@ -99,7 +99,7 @@ def test_printed_update_is_refuted_with_a_state(intermit: Run, write_scenario: W
     assert witness["violation"]["low"] > 0
 
 
-def test_g_as_printed_acts_while_the_thruster_falls_and_that_is_not_a_failed_claim(
+def test_g_as_printed_acts_in_the_fall_uncounted(
     intermit: Run, write_scenario: Write, tmp_path: Path
 ) -> None:
     verdicts = {}

@@ -12,7 +12,7 @@ from intermit.models.schedule import Schedule, longer_gap
 from intermit.scenario import load_scenario
 from intermit.study.check.filter_question import floor_question, is_certified
 from intermit.study.check.margins import convergence_margins
-from intermit.study.simulated_run import Seen
+from intermit.study.simulated_run import RunFigures
 from intermit.verify.exact.margin_search import greatest_certified, most_certified
 from intermit.verify.schedule.zero_runs import longest_zero_run
 
@@ -45,12 +45,12 @@ def test_search_believes_no_value_that_it_did_not_try() -> None:
 
 
 @pytest.mark.slow
-def test_convergence_margins_hold_where_they_are_stated_and_flip_beyond(
+def test_convergence_margins_hold_where_stated_and_flip_beyond(
     write_scenario: Callable[..., Path],
 ) -> None:
     scenario = load_scenario(write_scenario())
     (choice,) = scenario.laws
-    question = floor_question(scenario, choice.build(), Seen(), search=False)
+    question = floor_question(scenario, choice.build(), RunFigures(), search=False)
     calls: list[bool] = []
 
     def certified(law: Law, schedule: Schedule) -> bool:

@@ -23,7 +23,7 @@ def files(folder: Path) -> dict[str, bytes]:
 
 
 @pytest.mark.slow
-def test_a_scenario_becomes_a_report_and_the_record_the_same_again(
+def test_a_scenario_becomes_a_report_and_rebuilds_alike(
     intermit: Run, write_scenario: Callable[..., Path], tmp_path: Path
 ) -> None:
     scenario = write_scenario()

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import pytest
 from intermit.study.check import workers as jobs
 from intermit.study.check.case import CaseOptions, Decided
-from intermit.study.simulated_run import Seen
+from intermit.study.simulated_run import RunFigures
 
 LAWS = [SimpleNamespace(label=f"law {n}") for n in range(5)]
 
@@ -39,18 +39,18 @@ def run(others, monkeypatch, **replaced):
         monkeypatch.setitem(jobs.PARTS, name, part)
     told = []
     with ThreadPool(max(others, 1)) as pool:
-        crew = jobs.Crew(
+        crew = jobs.WorkerPool(
             pool if others else None, others, len(LAWS), lambda stage, share: told.append((stage, share))
         )
         for law in LAWS:
-            crew.add(None, law, Seen(), CaseOptions())
+            crew.add(None, law, RunFigures(), CaseOptions())
         found = crew.findings()
     assert all(0 <= share <= 1 for _, share in told)
     return found, done
 
 
 @pytest.mark.parametrize("others", [0, 1, 3])
-def test_every_part_is_done_once_and_findings_keep_the_laws_order(others, monkeypatch):
+def test_every_part_is_done_once_in_the_laws_order(others, monkeypatch):
     found, done = run(others, monkeypatch)
     assert [f.reference_floor for f in found] == [0, 1, 2, 3, 4]
     assert found[3].notes == ("note 3", "V' was not sampled: of a reason")

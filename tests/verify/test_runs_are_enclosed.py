@@ -135,7 +135,7 @@ OPEN = Claim("torque.limit", "", "", Verdict.UNDECIDED, reason="too cautious", n
 
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
-def test_a_limit_is_refuted_just_below_the_torque_and_never_above(law):
+def test_limit_is_refuted_just_below_the_torque_only(law):
     t = 1.25
     size = float(np.linalg.norm(simulated(law, START, F(t))))
     for factor, verdict in ((1 - 1e-5, Verdict.REFUTED), (1 + 1e-5, Verdict.UNDECIDED)):

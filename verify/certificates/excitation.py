@@ -10,7 +10,7 @@ from ..schedule.excitation import excitation
 from .format import Certificate, certificate_text
 from .schedule import schedule_data
 
-MOST_PIECES = 400
+MAX_PIECES = 400
 """Longer tables get no certificate: the checker looks at every interval between knots."""
 
 
@@ -21,7 +21,7 @@ def excitation_certificate(schedule: Schedule, length: Fraction) -> Certificate 
     ----------
     length : T, s
     """
-    if len(schedule.profile.shapes) > MOST_PIECES:
+    if len(schedule.profile.shapes) > MAX_PIECES:
         return None
     found = excitation(schedule, length)
     if found.least.low <= 0:

@@ -20,33 +20,34 @@ from typing import final
 
 import numpy as np
 
+from ...models.types import Array
 from ..exact.balls import fraction_above, fraction_below
 from ..exact.bernstein import Bernstein, rational
 from ..flow.stepping import Modes
 from .adaptive_tail import AdaptiveTailSystem
 from .comparison import (
-    BLIND,
+    ATTITUDE_BOUND_LOST,
     ONE,
     ROUND_UP,
     TWO,
     angle_factor,
     angle_factor_float,
     at_least_tiny,
-    audible,
+    drives_attitude,
     filter_scale,
 )
-from .flowpipe import Array, LawComparison
+from .flowpipe import LawComparison
 from .sets import InitialSet
 
-NEGLIGIBLE = 0.02
+MIN_ANGLE_BOUND_SHARE = 0.02
 """A lower bound of s below this share of the upper one is given up: it no longer helps."""
 
 
-FAINT = 1e-3
+MIN_RATE_BOUND_SHARE = 1e-3
 """Likewise for y, which enters as its square."""
 
 
-UNLEARNT = 0.01
+MIN_GAIN_SHARE = 0.01
 """A lower bound of k below this share of lambda may be held for a step: as g opens it learns less
 than the slack takes, and it must not fall below zero."""
 
@@ -124,15 +125,15 @@ class AdaptiveSystem(LawComparison):
     def loosened(self, state: Sequence[float], modes: Modes) -> tuple[float, ...]:
         """Give up lower bounds of y and s where they no longer help; keep upper ones off underflow."""
         y, s, k, r, Y, Z, L, U = state
-        low = (0.0 if y < FAINT * Y else y, 0.0 if modes[0] == "zero" else s)
+        low = (0.0 if y < MIN_RATE_BOUND_SHARE * Y else y, 0.0 if modes[0] == "zero" else s)
         Z = at_least_tiny(Z)
-        return (*low, k, r, audible(Y, Z, self._lam / self.coupling), Z, L, U)
+        return (*low, k, r, drives_attitude(Y, Z, self._lam / self.coupling), Z, L, U)
 
     def choices(self, state: Sequence[float], peak: float) -> Sequence[Modes]:
         """Whether the lower bound of s is kept; how to bound f from above, best now first; k held last."""
         _, s, k, _, Y, Z, _, _ = state
         a = self._a
-        if Z * Z >= BLIND:
+        if Z * Z >= ATTITUDE_BOUND_LOST:
             return ()
         tops = ["top", "split"] if self._f_top(Y) < self._f_split(s, Y, Z) else ["split", "top"]
         if 4 * a - Y * Y - 4 * a * Z * Z >= 0:
@@ -141,8 +142,8 @@ class AdaptiveSystem(LawComparison):
             tops.insert(0, "falling")
         if peak == 0.0:
             tops = ["split"]
-        keeps = ("kept", "zero") if s > NEGLIGIBLE * Z else ("zero",)
-        learns: list[Modes] = [(), ("held",)] if peak > 0 and k < UNLEARNT * self._lam else [()]
+        keeps = ("kept", "zero") if s > MIN_ANGLE_BOUND_SHARE * Z else ("zero",)
+        learns: list[Modes] = [(), ("held",)] if peak > 0 and k < MIN_GAIN_SHARE * self._lam else [()]
         return tuple((keep, top, *held) for keep in keeps for held in learns for top in tops)
 
     def _f_top(self, y: float) -> float:

@@ -17,7 +17,7 @@ from typing import final
 
 from ..exact.bernstein import Bernstein, rational
 from ..flow.stepping import Modes
-from .comparison import BLIND, ROUND_UP, TWO, filter_scale
+from .comparison import ATTITUDE_BOUND_LOST, ROUND_UP, TWO, filter_scale
 from .tail import PeriodicSystem
 
 
@@ -54,7 +54,7 @@ class AdaptiveTailSystem(PeriodicSystem):
     def choices(self, state: Sequence[float], peak: float) -> Sequence[Modes]:
         """One form only."""
         del peak
-        return (("tail",),) if state[3] ** 2 < BLIND else ()
+        return (("tail",),) if state[3] ** 2 < ATTITUDE_BOUND_LOST else ()
 
     def rate(
         self, gain_square: float, state: Sequence[float], modes: Modes, peak: float, slack: float

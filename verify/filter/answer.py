@@ -11,17 +11,17 @@ from ...models.laws import Law
 from ...models.schedule import Schedule
 from ..verdict import Claim
 from .certificate import floor_certificate
-from .certify import LARGEST_PERIOD, Floor, certify_floor
+from .certify import MAX_PERIOD_WINDOWS, FilterLowerBound, certify_floor
 from .claims import FloorFacts, convergence_claim, floor_claim, reaches_far_enough, torque_claim
 from .converged import ConvergedFilter, ConvergedFloor
 from .convergence import Convergence, analyse_convergence
 from .question import FloorQuestion
 from .recognise import follows_filter, recognise
-from .refine import settle_sooner
+from .refine import tighten_settling_time
 from .torque_bound import TorqueBound, torque_bound
 from .worst_found import WorstFound, find_worst
 
-LONGEST_TABLE = 400
+MAX_TABLE_WINDOWS = 400
 """Windows of a finite table that are certified; of a longer one the claims say up to when they speak."""
 SEARCH_PERIODS = 3
 """Periods simulated when looking for the worst start: the least R is seen early."""
@@ -38,7 +38,7 @@ class FloorAnswer:
     """
 
     claims: tuple[Claim, ...]
-    floor: Floor | None
+    floor: FilterLowerBound | None
     converged: ConvergedFloor | None
     worst: WorstFound | None
     torque: TorqueBound | None
@@ -50,16 +50,16 @@ def answer(question: FloorQuestion) -> FloorAnswer:
     q = question
     horizon = None
     if q.schedule.period is None:
-        last = q.schedule.windows[:LONGEST_TABLE][-1].off
+        last = q.schedule.windows[:MAX_TABLE_WINDOWS][-1].off
         horizon = min(q.horizon, q.schedule.end) if q.horizon is not None else min(last, q.schedule.end)
     floor = certify_floor(q.law, q.bounds, q.schedule, q.initial, horizon=horizon, options=q.options)
     tolerances = {"attitude": float(q.attitude), "rate": float(q.rate)}
     if floor is not None:
-        floor = settle_sooner(floor, **tolerances, options=q.options)
+        floor = tighten_settling_time(floor, **tolerances, options=q.options)
     decay = q.law.parameters.get("lambda")
     has_filter = follows_filter(close_loop(q.law))
     converged = None
-    short = q.schedule.period is not None and len(q.schedule.windows) <= LARGEST_PERIOD
+    short = q.schedule.period is not None and len(q.schedule.windows) <= MAX_PERIOD_WINDOWS
     if short and has_filter and decay is not None and decay > 0:
         converged = ConvergedFilter(q.schedule, decay).floor()
     worst = None

@@ -1,4 +1,4 @@
-"""A certified floor as a certificate: witnesses written out, for the stand-alone checker."""
+"""A certified floor as a certificate: flowpipes written out, for the stand-alone checker."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 from ..certificates.format import Certificate
 from ..certificates.schedule import schedule_data
 from ..flow.stepping import Step
-from .certify import Floor
-from .flowpipe import Witness
+from .certify import FilterLowerBound
+from .flowpipe import Flowpipe
 from .recognise import recognise
 
 if TYPE_CHECKING:
@@ -27,12 +27,12 @@ LAW_PARAMETERS = ("lambda", "gamma", "R0", "k0", "a")
 
 def floor_certificate(
     question: FloorQuestion,
-    floor: Floor,
+    floor: FilterLowerBound,
     *,
     convergence: Convergence | None = None,
     torque: TorqueBound | None = None,
 ) -> Certificate:
-    """Certificate of R >= floor, of convergence where every witness has a repeating part, and of more.
+    """Certificate of R >= floor, of convergence where every flowpipe has a repeating part, and of more.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def floor_certificate(
     """
     q, data = question, question_data(question)
     claim: dict[str, Any] = {"floor": Fraction(floor.value)}
-    tails = [w.tail for w in floor.witnesses]
+    tails = [w.tail for w in floor.flowpipes]
     if floor.horizon is not None:
         claim["horizon"] = floor.horizon
     else:
@@ -53,7 +53,7 @@ def floor_certificate(
         claim["settling"] = {"time": time, "attitude": q.attitude, "rate": q.rate}
     if torque is not None:
         claim["torque"] = Fraction(torque.applied)
-    return Certificate(KIND, data, claim, _witness(floor))
+    return Certificate(KIND, data, claim, _flowpipes(floor))
 
 
 def question_data(question: FloorQuestion) -> dict[str, Any]:
@@ -77,16 +77,16 @@ def question_data(question: FloorQuestion) -> dict[str, Any]:
     return data
 
 
-def _witness(floor: Floor) -> dict[str, Any]:
+def _flowpipes(floor: FilterLowerBound) -> dict[str, Any]:
     return {
         "coupling": Fraction(floor.bounds.coupling),
         "greatest_inertia": floor.bounds.greatest,
         "box": {"s": Fraction(floor.initial.s_high), "y": Fraction(floor.initial.y_high)},
-        "bins": [_bin(w) for w in floor.witnesses],
+        "bins": [_bin(w) for w in floor.flowpipes],
     }
 
 
-def _bin(witness: Witness) -> dict[str, Any]:
+def _bin(witness: Flowpipe) -> dict[str, Any]:
     i = witness.initial
     entry: dict[str, Any] = {
         "s": [Fraction(i.s_low), Fraction(i.s_high)],

@@ -1,6 +1,6 @@
 """Certify the floor of the filter state over an initial set: transient, tail, and bins.
 
-The answer is a list of witnesses, one a bin of the initial set, each true as it stands.
+The answer is a list of flowpipes, one a bin of the initial set, each true as it stands.
 """
 
 from __future__ import annotations
@@ -19,21 +19,21 @@ from ...models.schedule import Schedule
 from ..flow.stepping import CannotProceedError, ComparisonSystem, Stepper
 from .adaptive import AdaptiveSystem
 from .comparison import BodyBounds
-from .flowpipe import LawComparison, Witness
+from .flowpipe import Flowpipe, LawComparison
 from .persistence import PersistenceSystem
 from .recognise import recognise
 from .sets import InitialSet
-from .tail import LARGEST_RATIO, Tail, find_tail
+from .tail import MAX_RATIO, Tail, find_tail
 
-NEAR_BLIND = 1.9
-"""Above this S = 1 - b0 (308 deg) a witness that got stuck is taken to have lost the error angle."""
-FADING = 8
+ATTITUDE_BOUND_NEARLY_LOST = 1.9
+"""Above this S = 1 - b0 (308 deg) a flowpipe that got stuck is taken to have lost the error angle."""
+MIN_DECAY_EXPONENT = 8
 """Periods are followed until lambda t reaches this, if need be."""
 WINDOW_BUDGET = 240
 """Bins times windows of a table or a period."""
 
 
-LARGEST_PERIOD = 100
+MAX_PERIOD_WINDOWS = 100
 """Windows a period may have; of longer ones only this many are certified, and no tail is looked for."""
 
 
@@ -44,7 +44,7 @@ class FloorOptions:
 
     Attributes
     ----------
-    degree : degree of the witness's polynomials
+    degree : degree of the flowpipe's polynomials
     slack : relative slack of the inequalities, traded against the number of steps
     max_bins : bins of the initial set (only the adaptive law needs more than one)
     max_periods : periods after which no tail is looked for any more; up to ten times as many where
@@ -69,13 +69,13 @@ class FloorOptions:
 
 @final
 @dataclass(frozen=True)
-class Floor:
-    """A certified floor of R and everything that follows from its witnesses.
+class FilterLowerBound:
+    """A certified floor of R and everything that follows from its flowpipes.
 
     Attributes
     ----------
     law, bounds, schedule, initial : what it speaks about
-    witnesses : one a bin; together they cover `initial`
+    flowpipes : one a bin; together they cover `initial`
     horizon : end of the time covered, s, or None for all time
     """
 
@@ -83,30 +83,30 @@ class Floor:
     bounds: BodyBounds
     schedule: Schedule
     initial: InitialSet
-    witnesses: tuple[Witness, ...]
+    flowpipes: tuple[Flowpipe, ...]
     horizon: Fraction | None
 
     @cached_property
     def value(self) -> float:
         """R >= value, s, over the time covered, for every trajectory from the initial set."""
-        return min(w.floor for w in self.witnesses)
+        return min(w.floor for w in self.flowpipes)
 
     @property
     def steps(self) -> int:
         """Number of proved steps."""
-        return sum(sum(1 for _ in w.all_steps()) for w in self.witnesses)
+        return sum(sum(1 for _ in w.all_steps()) for w in self.flowpipes)
 
     @property
     def lost_angle(self) -> bool:
         """Whether it got stuck because a bound of the error angle reached 2 pi."""
-        lost = [w for w in self.witnesses if w.stuck is not None]
+        lost = [w for w in self.flowpipes if w.failed_at is not None]
         gaps = [w.boxes[-1].cosine_gap if w.steps else w.initial.s_high**2 for w in lost]
-        return max(gaps, default=0.0) > NEAR_BLIND
+        return max(gaps, default=0.0) > ATTITUDE_BOUND_NEARLY_LOST
 
     @property
-    def stuck(self) -> Fraction | None:
+    def failed_at(self) -> Fraction | None:
         """Earliest instant from which nothing could be proved, s, or None."""
-        return min((w.stuck for w in self.witnesses if w.stuck is not None), default=None)
+        return min((w.failed_at for w in self.flowpipes if w.failed_at is not None), default=None)
 
 
 def comparison_system(law: Law, bounds: BodyBounds) -> LawComparison | None:
@@ -142,7 +142,7 @@ def certify_floor(
     *,
     horizon: Fraction | None = None,
     options: FloorOptions | None = None,
-) -> Floor | None:
+) -> FilterLowerBound | None:
     """Certify R >= value > 0 over the initial set, or return None for a law without comparison system.
 
     Parameters
@@ -154,7 +154,7 @@ def certify_floor(
     Returns
     -------
     Floor
-        Its `stuck` tells where nothing could be proved any more, if anywhere; its `horizon`, how
+        Its `failed_at` tells where nothing could be proved any more, if anywhere; its `horizon`, how
         far the certificate reaches.
 
     Raises
@@ -173,12 +173,12 @@ def certify_floor(
         horizon = schedule.end
     run = FloorProof(system, schedule, horizon, options)
     if isinstance(system, PersistenceSystem):
-        witnesses: tuple[Witness, ...] = (run.complete(Witness(system, initial, ())),)
+        flowpipes: tuple[Flowpipe, ...] = (run.complete(Flowpipe(system, initial, ())),)
     else:
-        witnesses = run.binned(initial, bounds)
-    ends = [w.stuck if w.stuck is not None else w.end for w in witnesses if w.tail is None]
+        flowpipes = run.binned(initial, bounds)
+    ends = [w.failed_at if w.failed_at is not None else w.end for w in flowpipes if w.tail is None]
     reached = min(ends, default=None)
-    return Floor(law, bounds, schedule, initial, witnesses, reached)
+    return FilterLowerBound(law, bounds, schedule, initial, flowpipes, reached)
 
 
 def _first_jump(schedule: Schedule) -> Fraction | None:
@@ -195,7 +195,7 @@ def _first_jump(schedule: Schedule) -> Fraction | None:
 @final
 @dataclass(frozen=True)
 class FloorProof:
-    """How witnesses are made for one system and schedule; step sizes carry over from one to the next."""
+    """How flowpipes are made for one system and schedule; step sizes carry over from one to the next."""
 
     system: LawComparison
     schedule: Schedule
@@ -213,12 +213,12 @@ class FloorProof:
             self._known[:] = [stepper]
         return stepper
 
-    def complete(self, early: Witness, not_before: Fraction = Fraction(0)) -> Witness:
-        """Go on from an early witness to the horizon, or to a tail as soon as that costs nothing.
+    def complete(self, early: Flowpipe, not_before: Fraction = Fraction(0)) -> Flowpipe:
+        """Go on from an early flowpipe to the horizon, or to a tail as soon as that costs nothing.
 
         `not_before` is the earliest start of the tail, s: a later one decays faster.
         """
-        if early.stuck is not None:
+        if early.failed_at is not None:
             return early
         steps, least = list(early.steps), early.floor
         period, stepper = self.schedule.period, self._stepper()
@@ -227,8 +227,8 @@ class FloorProof:
             values = self.system.start(early.initial) if state is None else tuple(state.values())
             try:
                 steps += stepper.run(self.schedule, start, stop, values)
-            except CannotProceedError as stuck:
-                return Witness(self.system, early.initial, (*steps, *stuck.steps), stuck=stuck.time)
+            except CannotProceedError as failure:
+                return Flowpipe(self.system, early.initial, (*steps, *failure.steps), failed_at=failure.time)
             if period is None or stop % period != 0 or stop < not_before:
                 continue
             least = min(least, *(min(s.controls["r"]) for s in steps if s.start >= start))
@@ -238,14 +238,14 @@ class FloorProof:
             if tail is not None:
                 lowest = min(min(s.controls["r"]) for s in tail.steps)
                 if lowest >= 0.999 * least or stop >= self._max_periods * period:
-                    return Witness(self.system, early.initial, tuple(steps), tail)
-        return Witness(self.system, early.initial, tuple(steps))
+                    return Flowpipe(self.system, early.initial, tuple(steps), tail)
+        return Flowpipe(self.system, early.initial, tuple(steps))
 
     def _tail(self, start: Fraction, state: Mapping[str, float], before: Mapping[str, float]) -> Tail | None:
         """Look for a tail if the last period already shrank what must shrink; `before` is its start."""
         system, first = self.system.tail(tuple(state.values()))
         names = [name for group in system.decaying for name in group]
-        if any(state[name] > LARGEST_RATIO * before[name] for name in names):
+        if any(state[name] > MAX_RATIO * before[name] for name in names):
             return None
         return find_tail(system, self.schedule, start, first, self._stepper(system))
 
@@ -255,22 +255,22 @@ class FloorProof:
         if period is None:
             assert self.horizon is not None
             return [(start, self.horizon)] if start < self.horizon else []
-        if len(self.schedule.windows) > LARGEST_PERIOD:
-            stop = self.schedule.windows[LARGEST_PERIOD].on
+        if len(self.schedule.windows) > MAX_PERIOD_WINDOWS:
+            stop = self.schedule.windows[MAX_PERIOD_WINDOWS].on
             return [(start, stop)] if start < stop else []
         first = start // period + 1
         ends = [n * period for n in range(first, max(first, self._max_periods) + 1)]
         return list(zip([start, *ends[:-1]], ends, strict=True))
 
-    def early(self, initial: InitialSet, stop: Fraction) -> Witness:
-        """Return a witness over [0, stop]."""
+    def early(self, initial: InitialSet, stop: Fraction) -> Flowpipe:
+        """Return a flowpipe over [0, stop]."""
         try:
             steps = self._stepper().run(self.schedule, Fraction(0), stop, self.system.start(initial))
-        except CannotProceedError as stuck:
-            return Witness(self.system, initial, stuck.steps, stuck=stuck.time)
-        return Witness(self.system, initial, tuple(steps))
+        except CannotProceedError as failure:
+            return Flowpipe(self.system, initial, failure.steps, failed_at=failure.time)
+        return Flowpipe(self.system, initial, tuple(steps))
 
-    def binned(self, initial: InitialSet, bounds: BodyBounds) -> tuple[Witness, ...]:
+    def binned(self, initial: InitialSet, bounds: BodyBounds) -> tuple[Flowpipe, ...]:
         """Halve the worst bin again and again: most by the floor of the first windows, then by all."""
         stop = self.early_end
         weight = self.weight(bounds)
@@ -290,22 +290,22 @@ class FloorProof:
         """Periods enough for the rate's push to fade: s may grow for some 2/lambda before it shrinks."""
         assert self.schedule.period is not None
         asked, loss = self.options.max_periods, self.system.decay * self.schedule.period
-        return max(asked, min(10 * asked, ceil(FADING / loss)))
+        return max(asked, min(10 * asked, ceil(MIN_DECAY_EXPONENT / loss)))
 
     @property
     def _max_bins(self) -> int:
         """Bins, fewer for long tables: the work is bins times windows."""
-        windows = min(len(self.schedule.windows), LARGEST_PERIOD)
+        windows = min(len(self.schedule.windows), MAX_PERIOD_WINDOWS)
         if self.schedule.period is None and self.horizon is not None:
             windows = sum(1 for _ in self.schedule.windows_between(Fraction(0), self.horizon))
         return max(1, min(self.options.max_bins, WINDOW_BUDGET // max(windows, 1)))
 
     @staticmethod
     def _halve(
-        witnesses: list[Witness], weight: float, most: int, prove: Callable[[InitialSet], Witness]
-    ) -> list[Witness]:
+        flowpipes: list[Flowpipe], weight: float, most: int, prove: Callable[[InitialSet], Flowpipe]
+    ) -> list[Flowpipe]:
         order = count()
-        heap = [(_merit(w), next(order), w) for w in witnesses]
+        heap = [(_merit(w), next(order), w) for w in flowpipes]
         heapify(heap)
         while len(heap) < most:
             halves = halved(heap[0][2].initial, weight)
@@ -313,8 +313,8 @@ class FloorProof:
                 break
             heappop(heap)
             for half in halves:
-                witness = prove(half)
-                heappush(heap, (_merit(witness), next(order), witness))
+                flowpipe = prove(half)
+                heappush(heap, (_merit(flowpipe), next(order), flowpipe))
         return [w for _, _, w in sorted(heap)]
 
     def weight(self, bounds: BodyBounds) -> float:
@@ -330,9 +330,9 @@ class FloorProof:
         return rise.end if self.horizon is None else min(rise.end, self.horizon)
 
 
-def _merit(witness: Witness) -> float:
-    """Floor of an early witness; where it got stuck, the earlier the worse."""
-    return witness.floor if witness.stuck is None else float(witness.stuck) * 1e-9
+def _merit(flowpipe: Flowpipe) -> float:
+    """Floor of an early flowpipe; where it got stuck, the earlier the worse."""
+    return flowpipe.floor if flowpipe.failed_at is None else float(flowpipe.failed_at) * 1e-9
 
 
 def halved(initial: InitialSet, weight: float) -> list[InitialSet]:

@@ -13,7 +13,7 @@ from typing import Any, final
 
 from ..certificates.format import Certificate
 from ..verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict
-from .certify import Floor
+from .certify import FilterLowerBound
 from .converged import ConvergedFloor
 from .convergence import Convergence
 from .torque_bound import TorqueBound
@@ -42,7 +42,7 @@ class FloorFacts:
     """
 
     no_system: str
-    floor: Floor | None
+    floor: FilterLowerBound | None
     converged: ConvergedFloor | None = None
     along_run: tuple[float, float] | None = None
     worst: WorstFound | None = None
@@ -206,12 +206,12 @@ def torque_quantities(bound: TorqueBound) -> tuple[Quantity, ...]:
     )
 
 
-def reaches_far_enough(floor: Floor) -> bool:
+def reaches_far_enough(floor: FilterLowerBound) -> bool:
     """Whether the certificate covers all that can be asked: all time, or the whole finite table."""
-    return floor.horizon is None or (floor.stuck is None and floor.schedule.period is None)
+    return floor.horizon is None or (floor.failed_at is None and floor.schedule.period is None)
 
 
-def _covered(floor: Floor) -> str:
+def _covered(floor: FilterLowerBound) -> str:
     """The time that a certificate covers."""
     return "for all t >= 0" if floor.horizon is None else f"on [0, {_seconds(floor.horizon)}]"
 
@@ -232,8 +232,8 @@ def _other_answers(facts: FloorFacts) -> tuple[Quantity, ...]:
     return tuple(found)
 
 
-def _reach_quantities(floor: Floor, found: Convergence) -> tuple[Quantity, ...]:
-    if floor.stuck is not None:
+def _reach_quantities(floor: FilterLowerBound, found: Convergence) -> tuple[Quantity, ...]:
+    if floor.failed_at is not None:
         return ()
     angle = degrees(found.largest_angle) * (1 + 1e-14)
     items = [
@@ -247,9 +247,9 @@ def _reach_quantities(floor: Floor, found: Convergence) -> tuple[Quantity, ...]:
     return tuple(items)
 
 
-def _certificate(facts: FloorFacts, floor: Floor) -> Evidence:
+def _certificate(facts: FloorFacts, floor: FilterLowerBound) -> Evidence:
     summary = (
-        f"{len(floor.witnesses)} polynomial sub- and supersolutions, {floor.steps} steps, every differential "
+        f"{len(floor.flowpipes)} polynomial sub- and supersolutions, {floor.steps} steps, every differential "
         "inequality proved by Bernstein coefficients in exact rationals"
     )
     details: dict[str, Any] = {"steps": floor.steps}
@@ -269,22 +269,22 @@ def _search_evidence(facts: FloorFacts) -> tuple[Evidence, ...]:
     return (Evidence(EvidenceKind.SAMPLES, summary, details=start),)
 
 
-def _shortfall(floor: Floor) -> tuple[str, str]:
+def _shortfall(floor: FilterLowerBound) -> tuple[str, str]:
     if floor.law.parameters.get("k0") == 0 and floor.initial.s_low == floor.initial.y_low == 0:
         return (
             "k(0) = 0: the nearer a start is to the target, the less its gain learns; no decay is certified "
             "for all of them at once",
             "take k0 > 0",
         )
-    if floor.stuck is not None and not floor.lost_angle:
+    if floor.failed_at is not None and not floor.lost_angle:
         return (
-            f"no further step could be proved from t = {float(floor.stuck):.4g} s",
+            f"no further step could be proved from t = {float(floor.failed_at):.4g} s",
             "split the initial set finer (max_bins), or narrow it",
         )
-    if floor.stuck is not None:
+    if floor.failed_at is not None:
         return (
-            f"the certified bound of the error angle reaches 2 pi at t = {float(floor.stuck):.4g} s: beyond "
-            "it nothing can be certified",
+            f"the certified bound of the error angle reaches 2 pi at t = {float(floor.failed_at):.4g} s: "
+            "beyond it nothing can be certified",
             "narrow the initial set (smaller error angle or rate), or shorten the first off-time",
         )
     end = float(floor.horizon) if floor.horizon is not None else 0.0

@@ -35,14 +35,14 @@ ONE = Bernstein.constant(1)
 TWO = Bernstein.constant(2)
 QUARTER, THIRTY_SECOND = Bernstein.constant(Fraction(1, 4)), Bernstein.constant(Fraction(1, 32))
 ZERO = Bernstein.constant(0)
-BLIND = 1.98
+ATTITUDE_BOUND_LOST = 1.98
 """Above this S = 1 - b0 (337 deg) the error-angle bound counts as having reached 2 pi."""
 NO_BOUND = 1.5
 """A value of s that every trajectory stays below (s <= sqrt 2): no bound at all."""
 ROUND_UP = 1 + 1e-14
 """Covers the rounding of a few float operations on positive numbers (each 1.2e-16 relative)."""
 
-AUDIBLE = 1e-6
+MIN_RATE_SHARE = 1e-6
 """Least rate, as a share of lambda, at which an upper bound of y lets that of s grow."""
 REACH = 1e3
 """How many times lambda r the slack of r may be where r is far below what a window brings."""
@@ -102,12 +102,12 @@ def at_least_tiny(value: float) -> float:
     return max(value, 1e-60) if value > 0 else value
 
 
-def audible(y: float, s: float, scale: float) -> float:
+def drives_attitude(y: float, s: float, scale: float) -> float:
     """Raise a positive upper bound y so that its share c y in s' is not lost in the rounding of s.
 
     `scale` is lambda/c. Exactly 0 stays 0: the rate of a body at rest.
     """
-    return max(y, 1e-60, AUDIBLE * scale * s) if y > 0 else y
+    return max(y, 1e-60, MIN_RATE_SHARE * scale * s) if y > 0 else y
 
 
 def filter_scale(loss: float, peak: float) -> float:

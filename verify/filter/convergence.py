@@ -1,7 +1,7 @@
 """Convergence of attitude and rate, for every start in an initial set and any lambda > 0.
 
 Both laws contract |Omega|_J by exp(-m/2), m = integral of g^2 kappa (1 + b0), and the attitude
-follows in cascade. Certified witnesses with a repeating tail carry this out: over every period
+follows in cascade. Certified flowpipes with a repeating tail carry this out: over every period
 after the tail's start s = sqrt(1 - b0) and |Omega|_J shrink by a proved ratio. For the
 persistence filter the closed form of the same argument is
 
@@ -17,15 +17,13 @@ from math import ceil, inf, log, nextafter
 from typing import final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...models.schedule import Schedule
+from ...models.types import Array
 from ..exact.balls import sqrt_below
-from .certify import Floor
-from .flowpipe import Box, Witness
+from .certify import FilterLowerBound
+from .flowpipe import Box, Flowpipe
 from .torque_bound import OUTWARD, greatest_bv
-
-Array = NDArray[np.float64]
 
 
 @final
@@ -66,16 +64,16 @@ class Convergence:
     largest_rate: float
 
 
-def analyse_convergence(floor: Floor, *, attitude: float, rate: float) -> Convergence:
+def analyse_convergence(floor: FilterLowerBound, *, attitude: float, rate: float) -> Convergence:
     """Draw the consequences of a floor for attitude and rate.
 
     Parameters
     ----------
     attitude, rate : tolerances on |bv| and on |w|, rad/s
     """
-    reaches = [list(_reaches(floor, w)) for w in floor.witnesses]
-    gaps = max(b.cosine_gap for w in floor.witnesses for b in (*w.boxes, *w.tail_boxes))
-    tails = [w.tail for w in floor.witnesses]
+    reaches = [list(_reaches(floor, w)) for w in floor.flowpipes]
+    gaps = max(b.cosine_gap for w in floor.flowpipes for b in (*w.boxes, *w.tail_boxes))
+    tails = [w.tail for w in floor.flowpipes]
     complete = [t for t in tails if t is not None]
     converges = len(complete) == len(tails)
     times = [_settled(r, floor.schedule, floor.horizon, attitude, rate) for r in reaches]
@@ -89,10 +87,10 @@ def analyse_convergence(floor: Floor, *, attitude: float, rate: float) -> Conver
     )
 
 
-def settling(witness: Witness, floor: Floor, *, attitude: float, rate: float) -> float:
+def settling(flowpipe: Flowpipe, floor: FilterLowerBound, *, attitude: float, rate: float) -> float:
     """Time after which one bin of a floor for all time is within the tolerances, s; inf where unknown."""
-    found = _settled(list(_reaches(floor, witness)), floor.schedule, None, attitude, rate)
-    return inf if found is None or witness.tail is None else found
+    found = _settled(list(_reaches(floor, flowpipe)), floor.schedule, None, attitude, rate)
+    return inf if found is None or flowpipe.tail is None else found
 
 
 def _angle(gap: float) -> float:
@@ -100,12 +98,12 @@ def _angle(gap: float) -> float:
     return float(4 * np.arcsin(min(np.sqrt(gap / 2) * OUTWARD, 1.0)) * OUTWARD)
 
 
-def _reaches(floor: Floor, witness: Witness) -> Iterator[Reach]:
+def _reaches(floor: FilterLowerBound, flowpipe: Flowpipe) -> Iterator[Reach]:
     root = sqrt_below(floor.bounds.least)
-    scale = max(witness.tail.ratios.values(), default=0.0) if witness.tail is not None else None
-    for box in witness.boxes:
+    scale = max(flowpipe.tail.ratios.values(), default=0.0) if flowpipe.tail is not None else None
+    for box in flowpipe.boxes:
         yield _reach(box, root, None)
-    for box in witness.tail_boxes:
+    for box in flowpipe.tail_boxes:
         yield _reach(box, root, scale)
 
 
@@ -141,15 +139,15 @@ def _settled(
     return nextafter(last * OUTWARD, inf)
 
 
-def envelope(floor: Floor, times: Array) -> dict[str, Array]:
+def envelope(floor: FilterLowerBound, times: Array) -> dict[str, Array]:
     """Bounds at given times, for figures: error angle (rad), |w| (rad/s), least R (s).
 
     Each time gets the worst of the boxes that hold it; beyond the covered time the values are NaN.
     """
     result = {name: np.full(times.shape, np.nan) for name in ("angle", "rate", "filter")}
     root = sqrt_below(floor.bounds.least)
-    for witness in floor.witnesses:
-        for box, start, stop, scale in _unrolled(floor, witness, float(times.max(initial=0.0))):
+    for flowpipe in floor.flowpipes:
+        for box, start, stop, scale in _unrolled(floor, flowpipe, float(times.max(initial=0.0))):
             inside = (times >= start) & (times <= stop)
             if not inside.any():
                 continue
@@ -157,20 +155,22 @@ def envelope(floor: Floor, times: Array) -> dict[str, Array]:
             result["angle"][inside] = np.fmax(result["angle"][inside], _angle(box.cosine_gap * scale**2))
             result["rate"][inside] = np.fmax(result["rate"][inside], reach.rate * scale)
             result["filter"][inside] = np.fmin(result["filter"][inside], box.filter_low)
-    if floor.horizon is not None:  # beyond it some of the witnesses are silent
+    if floor.horizon is not None:  # beyond it some of the flowpipes are silent
         for values in result.values():
             values[times > float(floor.horizon)] = np.nan
     return result
 
 
-def _unrolled(floor: Floor, witness: Witness, end: float) -> Iterator[tuple[Box, float, float, float]]:
-    for box in witness.boxes:
+def _unrolled(
+    floor: FilterLowerBound, flowpipe: Flowpipe, end: float
+) -> Iterator[tuple[Box, float, float, float]]:
+    for box in flowpipe.boxes:
         yield box, box.start, box.stop, 1.0
-    if witness.tail is None or floor.schedule.period is None:
+    if flowpipe.tail is None or floor.schedule.period is None:
         return
-    period, ratio = float(floor.schedule.period), max(witness.tail.ratios.values(), default=0.0)
+    period, ratio = float(floor.schedule.period), max(flowpipe.tail.ratios.values(), default=0.0)
     n = 0
-    while float(witness.tail.start) + n * period <= end:
-        for box in witness.tail_boxes:
+    while float(flowpipe.tail.start) + n * period <= end:
+        for box in flowpipe.tail_boxes:
             yield box, box.start + n * period, box.stop + n * period, ratio**n
         n += 1

@@ -12,16 +12,15 @@ from math import comb, inf
 from typing import final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...models.schedule import polynomial as poly
+from ...models.types import Array
 from ..exact.balls import fraction_above, fraction_below
 from ..exact.bernstein import lower_bound
 from ..flow.stepping import Step
 from .sets import InitialSet
 from .tail import PeriodicSystem, Tail
 
-Array = NDArray[np.float64]
 PARTS = 8
 """Equal parts of a step, each of which gets its own box."""
 ROUNDING = 1e-14
@@ -79,21 +78,21 @@ class LawComparison(PeriodicSystem):
 
 @final
 @dataclass(frozen=True)
-class Witness:
+class Flowpipe:
     """Proved bounds of every trajectory that starts in `initial`.
 
     Attributes
     ----------
     steps : proved steps from t = 0
     tail : repeating steps from the end of `steps` on, or None
-    stuck : instant from which nothing could be proved, s, or None
+    failed_at : instant from which nothing could be proved, s, or None
     """
 
     system: LawComparison
     initial: InitialSet
     steps: tuple[Step, ...]
     tail: Tail | None = None
-    stuck: Fraction | None = None
+    failed_at: Fraction | None = None
 
     @cached_property
     def floor(self) -> float:

@@ -21,11 +21,12 @@ from typing import final
 
 import numpy as np
 
+from ...models.types import Array
 from ..exact.balls import fraction_below
 from ..exact.bernstein import Bernstein, rational
 from ..flow.stepping import Modes
 from .comparison import (
-    BLIND,
+    ATTITUDE_BOUND_LOST,
     NO_BOUND,
     ONE,
     ROUND_UP,
@@ -33,10 +34,10 @@ from .comparison import (
     angle_factor,
     angle_factor_float,
     at_least_tiny,
-    audible,
+    drives_attitude,
     filter_scale,
 )
-from .flowpipe import Array, LawComparison
+from .flowpipe import LawComparison
 from .sets import InitialSet
 
 
@@ -78,7 +79,7 @@ class PersistenceSystem(LawComparison):
         system = PersistenceSystem(
             decay=self.decay, initial_filter=self.initial_filter, coupling=self.coupling, scalable=True
         )
-        if state[2] * state[2] >= BLIND:
+        if state[2] * state[2] >= ATTITUDE_BOUND_LOST:
             system.decaying = (("v", "z"),)
             system.free = ("y", "s")
         return system, tuple(state)
@@ -107,7 +108,7 @@ class PersistenceSystem(LawComparison):
         _, _, s, _, z, r = state
         if r < 0.0:
             return ()
-        angle = "angle" if s * s < BLIND else "blind"
+        angle = "angle" if s * s < ATTITUDE_BOUND_LOST else "blind"
         if peak == 0.0:
             return ((angle, "none"),)
         sigma = self._R0 * z * z / r
@@ -121,7 +122,7 @@ class PersistenceSystem(LawComparison):
         K, y, s, v, z, r = state
         s = NO_BOUND if modes[0] == "blind" else s
         s, z, scale = at_least_tiny(s), at_least_tiny(z), self._lam / self.coupling
-        return (K, audible(y, s, scale), s, audible(v, z, scale), z, r)
+        return (K, drives_attitude(y, s, scale), s, drives_attitude(v, z, scale), z, r)
 
     def rate(
         self, gain_square: float, state: Sequence[float], modes: Modes, peak: float, slack: float

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from .certify import Floor, FloorOptions, FloorProof, comparison_system, halved
+from .certify import FilterLowerBound, FloorOptions, FloorProof, comparison_system, halved
 from .convergence import settling
-from .flowpipe import Witness
+from .flowpipe import Flowpipe
 
 LATER = 3
 """Periods by which a tail is moved at a time."""
@@ -20,9 +20,9 @@ WORTH = 0.98
 """A later tail must lower the bin's settling time to this share of it, or the bin is halved instead."""
 
 
-def settle_sooner(
-    floor: Floor, *, attitude: float, rate: float, options: FloorOptions | None = None
-) -> Floor:
+def tighten_settling_time(
+    floor: FilterLowerBound, *, attitude: float, rate: float, options: FloorOptions | None = None
+) -> FilterLowerBound:
     """Return a floor of the same set, no lower, whose last bin settles no later.
 
     Parameters
@@ -31,42 +31,42 @@ def settle_sooner(
     """
     options, period = options or FloorOptions(), floor.schedule.period
     system = comparison_system(floor.law, floor.bounds)
-    if period is None or floor.horizon is not None or system is None or len(floor.witnesses) < 2:
+    if period is None or floor.horizon is not None or system is None or len(floor.flowpipes) < 2:
         return floor
     proof = FloorProof(system, floor.schedule, None, options)
 
-    def time(witness: Witness) -> float:
-        return settling(witness, floor, attitude=attitude, rate=rate)
+    def time(flowpipe: Flowpipe) -> float:
+        return settling(flowpipe, floor, attitude=attitude, rate=rate)
 
-    witnesses = list(floor.witnesses)
+    flowpipes = list(floor.flowpipes)
     for _ in range(options.settling_moves):
-        worst = max(witnesses, key=time)
+        worst = max(flowpipes, key=time)
         better = _later(proof, worst)
         if not _is_proved(better, floor) or max(map(time, better)) > WORTH * time(worst):
             better = _halves(proof, worst, floor)
         if not _is_proved(better, floor) or max(map(time, better)) > time(worst):
             break
-        witnesses = [w for w in witnesses if w is not worst] + better
-    return replace(floor, witnesses=tuple(witnesses))
+        flowpipes = [w for w in flowpipes if w is not worst] + better
+    return replace(floor, flowpipes=tuple(flowpipes))
 
 
-def _is_proved(witnesses: list[Witness], floor: Floor) -> bool:
+def _is_proved(flowpipes: list[Flowpipe], floor: FilterLowerBound) -> bool:
     """Whether there are any, all for all time, and none below the floor."""
-    return bool(witnesses) and all(w.tail is not None and w.floor >= floor.value for w in witnesses)
+    return bool(flowpipes) and all(w.tail is not None and w.floor >= floor.value for w in flowpipes)
 
 
-def _later(proof: FloorProof, witness: Witness) -> list[Witness]:
+def _later(proof: FloorProof, flowpipe: Flowpipe) -> list[Flowpipe]:
     """The same bin with its tail moved on."""
-    assert witness.tail is not None
+    assert flowpipe.tail is not None
     assert proof.schedule.period is not None
-    start = witness.tail.start + LATER * proof.schedule.period
-    return [proof.complete(Witness(proof.system, witness.initial, witness.steps), start)]
+    start = flowpipe.tail.start + LATER * proof.schedule.period
+    return [proof.complete(Flowpipe(proof.system, flowpipe.initial, flowpipe.steps), start)]
 
 
-def _halves(proof: FloorProof, witness: Witness, floor: Floor) -> list[Witness]:
+def _halves(proof: FloorProof, flowpipe: Flowpipe, floor: FilterLowerBound) -> list[Flowpipe]:
     """Both halves of the bin, with tails no earlier than its own; none of a bin that is a point."""
-    assert witness.tail is not None
-    halves = halved(witness.initial, proof.weight(floor.bounds))
+    assert flowpipe.tail is not None
+    halves = halved(flowpipe.initial, proof.weight(floor.bounds))
     if len(halves) == 1:
         return []
-    return [proof.complete(proof.early(half, proof.early_end), witness.tail.start) for half in halves]
+    return [proof.complete(proof.early(half, proof.early_end), flowpipe.tail.start) for half in halves]

@@ -12,7 +12,7 @@ from ...models.rigid_body import RigidBody
 from ..exact.balls import ball, float_above, float_below, fraction_above, sqrt_above, sqrt_below
 from .comparison import BodyBounds
 
-LARGEST_S = 1.4142135623730954
+MAX_S = 1.4142135623730954
 """The float above sqrt 2, the largest value of s = sqrt(1 - b0)."""
 
 
@@ -67,7 +67,7 @@ class InitialSet:
         s_high = 0.0
         if max_angle_deg > 0:
             s_high = float_above((1 - (ball(max_angle_deg) / 360).cos_pi()).sqrt())
-            s_high = min(nextafter(s_high, inf), LARGEST_S)  # room for a checker with a rational pi
+            s_high = min(nextafter(s_high, inf), MAX_S)  # room for a checker with a rational pi
         reaches = []
         if max_rate is not None or max_weighted_rate is None:
             reach = (max_rate or Fraction(0)) + 2 * gain_term * _greatest_bv(s_high)
@@ -104,7 +104,7 @@ class InitialSet:
         at_rest = gain_term == 0 and not any(rate)
         return cls(
             s_low,
-            min(s_high, LARGEST_S),
+            min(s_high, MAX_S),
             0.0 if at_rest else y_low,
             0.0 if at_rest else y_high,
             "the scenario's initial state",
@@ -113,7 +113,7 @@ class InitialSet:
 
 def _greatest_bv(s_high: float) -> Fraction:
     """Rational bound of |bv| = s sqrt(2 - s^2) over s <= s_high: s sqrt 2, at most 1."""
-    return min(Fraction(1), Fraction(s_high) * Fraction(LARGEST_S))
+    return min(Fraction(1), Fraction(s_high) * Fraction(MAX_S))
 
 
 def _root_bounds(square: object) -> tuple[float, float]:

@@ -1,6 +1,6 @@
-"""Periodic schedules: a witness over one period that repeats for ever.
+"""Periodic schedules: a flowpipe over one period that repeats for ever.
 
-On [t1, t1 + T] a witness whose lower bounds end no lower than they began and whose upper bounds
+On [t1, t1 + T] a flowpipe whose lower bounds end no lower than they began and whose upper bounds
 end no higher holds again over each later period, with the same functions. Components that enter
 their inequalities linearly, or with terms that only help when small, are scaled down together:
 if they end at most theta times where they began, the n-th period holds with theta^n times them.
@@ -22,7 +22,7 @@ ATTEMPTS = 4
 """How often the start of a periodic component is moved to its loose side."""
 SLOWEST = 0.003
 """Least share of its start that a periodic component is taken to forget over a period."""
-LARGEST_RATIO = 0.998
+MAX_RATIO = 0.998
 """A decay per period slower than this does not count as a decay."""
 
 
@@ -112,7 +112,7 @@ def decay_ratios(
                 theta = max(theta, nextafter(end[name] / first[name], 2.0))
             elif end[name] > 0:
                 return None
-        if theta > LARGEST_RATIO:
+        if theta > MAX_RATIO:
             return None
         ratios |= dict.fromkeys(group, theta)
     return ratios

@@ -19,15 +19,14 @@ from dataclasses import dataclass
 from typing import final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...models.laws import Law
+from ...models.types import Array
 from ..exact.balls import fraction_above, fraction_below, sqrt_above, sqrt_below
-from .certify import Floor
+from .certify import FilterLowerBound
 from .flowpipe import Box
 from .recognise import recognise
 
-Array = NDArray[np.float64]
 OUTWARD = 1 + 1e-12
 """Covers fewer than 1000 roundings (1.2e-16 each) of operations on numbers of one sign."""
 
@@ -83,9 +82,9 @@ def greatest_bv(S: Array) -> Array:
     return bound
 
 
-def torque_bound(floor: Floor) -> TorqueBound:
+def torque_bound(floor: FilterLowerBound) -> TorqueBound:
     """Bound the torque over the time the floor covers, for every trajectory of its set."""
-    boxes = [box for w in floor.witnesses for box in (*w.boxes, *w.tail_boxes)]
+    boxes = [box for w in floor.flowpipes for box in (*w.boxes, *w.tail_boxes)]
     c = _Columns.of(boxes)
     least, greatest = fraction_below(floor.bounds.least), fraction_above(floor.bounds.greatest)
     root = sqrt_above(floor.bounds.greatest)

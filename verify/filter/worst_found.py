@@ -17,9 +17,9 @@ from ...models.ensemble import MetricOptions, Tolerances, simulate_ensemble
 from ...models.laws import Law
 from ...models.rigid_body import RigidBody
 from ...models.schedule import Schedule
+from ...models.types import Array
 from .sets import InitialSet
 
-Array = NDArray[np.float64]
 SEARCHING = Tolerances(rtol=1e-8, atol=1e-10)
 """The least R found is an estimate: eight digits of each run are more than enough."""
 INSIDE = 1 - 1e-9

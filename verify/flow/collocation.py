@@ -12,9 +12,9 @@ from math import comb
 from typing import final
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ...models.types import Array
+
 Rates = Callable[[Array], Array]
 """Rates (m, n), per second, at m points of the step for states (m, n); the points are the caller's."""
 

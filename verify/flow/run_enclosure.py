@@ -34,7 +34,7 @@ LOCAL_ERROR = 1e-13
 """Remainder of a step that is aimed at, relative to each state or to 1."""
 SLACK = 0.05
 """By how much the box of a step is wider than what the polynomial reaches in it."""
-MOST_STEPS = 4000
+MAX_STEPS = 4000
 WIDEST = 1e-3
 """Radius of a state, relative to it or to 1, beyond which the enclosure is given up."""
 
@@ -124,7 +124,7 @@ class EnclosedRun:
         if phase.resets:
             raise NoEnclosureError(f"the law decides anew at t = {float(phase.start):g} s")
         now, step = phase.start, phase.end - phase.start
-        for _ in range(MOST_STEPS):
+        for _ in range(MAX_STEPS):
             tau = ball(now - phase.origin)
             coefficients = self._coefficients(phase, self._state, tau, ORDER - 1)
             step = min(_rounded(_reach(coefficients)), 2 * step, phase.end - now)
@@ -134,7 +134,7 @@ class EnclosedRun:
                 raise NoEnclosureError(f"the enclosure is too wide from t = {float(now):g} s on")
             if now == phase.end:
                 return
-        raise NoEnclosureError(f"{MOST_STEPS} steps do not reach beyond t = {float(now):g} s")
+        raise NoEnclosureError(f"{MAX_STEPS} steps do not reach beyond t = {float(now):g} s")
 
     def _advance(self, phase: Phase, tau: Any, coefficients: list[Balls], step: Fraction) -> Fraction:
         """Take a step, halved until a box holds the solution during it; return its length, s.

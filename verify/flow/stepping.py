@@ -23,8 +23,9 @@ from ...models.schedule import Schedule
 from ...models.schedule import polynomial as poly
 from ...models.schedule.piecewise import Piece
 from ...models.schedule.polynomial import Coefficients
+from ...models.types import Array
 from ..exact.bernstein import Bernstein
-from .collocation import CHECK_POINTS, Array, propose, rule
+from .collocation import CHECK_POINTS, propose, rule
 
 Modes = tuple[str, ...]
 """Which of several valid forms of the inequalities a step uses, in the system's own words."""

@@ -14,19 +14,18 @@ from math import ceil
 from typing import Any, final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...models.linear import LinearPlant
+from ...models.types import Array
 from .. import checker
 from ..certificates.format import Certificate, as_text, certificate_text
 from ..certificates.schedule import schedule_data
 from ..exact.rational_quantity import rational_quantity
 from ..verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict, Witness
 
-Array = NDArray[np.float64]
 BACKING_OFF = (1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
 """Relative distances from the computed spectral radius at which a P is tried, nearest first."""
-MOST_STEPS = 20_000
+MAX_STEPS = 20_000
 """Steps of the enclosure that are tried; each is about a millisecond for a small plant."""
 Enclosed = tuple[checker.Matrix, Fraction]
 SOURCE = "Floquet's theorem; Stein's inequality"
@@ -60,8 +59,8 @@ def spectral_radius(plant: LinearPlant) -> SpectralRadius:
     """
     if plant.schedule.period is None:
         raise ValueError("Floquet multipliers need a periodic schedule: give it a period")
-    if steps_needed(plant) > MOST_STEPS:
-        raise OverflowError(f"enclosing the monodromy matrix takes more than {MOST_STEPS} steps")
+    if steps_needed(plant) > MAX_STEPS:
+        raise OverflowError(f"enclosing the monodromy matrix takes more than {MAX_STEPS} steps")
     enclosed = _enclosure(plant)
     centre = np.array([[float(x) for x in row] for row in enclosed[0]])
     guess = float(np.abs(np.linalg.eigvals(centre)).max())

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from typing import final
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ...models.types import Array
+
 USABLE = frozenset({"Solved", "AlmostSolved"})
 """Clarabel's words after which its numbers are worth rounding (they prove nothing by themselves)."""
 

@@ -16,13 +16,13 @@ from typing import Any, final
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
 from ...models.closed_loop import body_values
 from ...models.laws import Expression
 from ...models.lowering import evaluate
 from ...models.rigid_body import RigidBody
 from ...models.schedule import Schedule
+from ...models.types import Array
 from ..verdict import Witness
 from .candidates import Candidate
 from .exact_states import (
@@ -35,12 +35,11 @@ from .exact_states import (
 )
 from .refutation import Refutation, at_state
 
-Array = NDArray[np.float64]
-SMALLEST_ANGLE = 1e-3
+MIN_ANGLE = 1e-3
 """Least half error angle searched, rad: V'/W tends to its limit at the equilibrium like its square."""
 ROUNDING = 1e-12
 """Values of V'/W (1/s) below this are rounding."""
-LARGEST_RATIO = 20.0
+MAX_RATIO = 20.0
 """Largest component of J^(1/2) Omega over half the error angle, sqrt(kg m^2)/s."""
 FLOOR_TARGET = Fraction(1)
 """k* = 1/R_min of the search, 1/s; R is searched above R_min."""
@@ -188,8 +187,8 @@ class _Search:
     def _bounds(self, length: float) -> tuple[Array, Array]:
         """Box of (log theta, axis (3), J^(1/2) Omega/theta (3), controller states, signals, time)."""
         largest = self._options.largest
-        low = [math.log(SMALLEST_ANGLE), -1, -1, -1, *[-LARGEST_RATIO] * 3]
-        high = [math.log(math.pi), 1, 1, 1, *[LARGEST_RATIO] * 3]
+        low = [math.log(MIN_ANGLE), -1, -1, -1, *[-MAX_RATIO] * 3]
+        high = [math.log(math.pi), 1, 1, 1, *[MAX_RATIO] * 3]
         above_floor = self._candidate.floor is not None
         for name in self._states:
             least = (float(1 / FLOOR_TARGET) if above_floor else 0.05) if name == "R" else 0.0

@@ -11,14 +11,13 @@ from fractions import Fraction
 from typing import final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...models.types import Array
 from ..checker import Exponents, Matrix, Ring, is_positive_definite
 from .cone_program import maximise_level
 from .rounding import fit_exactly, rational_null_space
 from .sums_of_squares import Square, Target, Terms, square_terms
 
-Array = NDArray[np.float64]
 FACES = 4
 """How often a search may restrict itself to a face of the cone."""
 FLAT = 1e-6

@@ -6,11 +6,10 @@ import math
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...models.types import Array
 from ..checker import Matrix
 
-Array = NDArray[np.float64]
 SMALL_DENOMINATOR = 64
 """Null vectors are looked for among rationals up to this denominator."""
 

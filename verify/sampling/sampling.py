@@ -11,17 +11,16 @@ from fractions import Fraction
 from typing import final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...models.closed_loop import body_values
 from ...models.lowering import ArrayFunction, shared, walk
 from ...models.rigid_body import RigidBody
+from ...models.types import Array
 from .domain import SampledDomain
 from .function import DerivativeFunction
 from .search import Refinement, refine
 from .sobol import BITS, PRIMITIVE, SobolRows
 
-Array = NDArray[np.float64]
 Progress = Callable[[float], None]
 
 BLOCK = 1 << 14

@@ -6,12 +6,11 @@ from dataclasses import dataclass
 from typing import Any, Literal, final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...models.types import Array
 from .domain import SampledDomain
 from .function import DerivativeFunction
 
-Array = NDArray[np.float64]
 Margin = Literal["rate", "bound"]
 
 BARRIER = 1e-10

@@ -17,7 +17,8 @@ from typing import final
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ...models.types import Array
+
 Bits = NDArray[np.uint32]
 
 BITS = 30

@@ -12,15 +12,13 @@ from fractions import Fraction
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...models.lowering import FIELD, evaluate, walk
 from ...models.rigid_body import RigidBody
+from ...models.types import Array
 from ..verdict import Quantity, Witness
 from .domain import SampledDomain
 from .function import RESULTS, DerivativeFunction, exact_body
-
-Array = NDArray[np.float64]
 
 PRECISION = 256
 """Bits of the balls."""

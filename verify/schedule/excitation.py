@@ -18,7 +18,7 @@ from ...models.schedule.polynomial import Coefficients
 from ..exact.polynomial_range import least_value
 from ..exact.rational_quantity import rational_quantity, seconds
 from ..verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict, Witness
-from .excitation_screen import LARGEST_EXACT, screen
+from .excitation_screen import MAX_EXACT, screen
 from .moving_integral import MovingIntegral, Segment
 from .zero_runs import default_length, longest_zero_run, missable_windows
 
@@ -86,7 +86,7 @@ def excitation(schedule: Schedule, length: Fraction) -> Excitation:
     moving = MovingIntegral(schedule, length)
     segments = list(moving.segments())
     every = list(range(len(segments)))
-    low, high = (every, every) if len(segments) <= LARGEST_EXACT else screen(moving, segments)
+    low, high = (every, every) if len(segments) <= MAX_EXACT else screen(moving, segments)
     least, used = _extreme(moving, [segments[i] for i in low], length, sign=1)
     greatest, also = _extreme(moving, [segments[i] for i in high], length, sign=-1)
     least = Bound(max(least.low, Fraction(0)), least.high, least.instant)
@@ -167,7 +167,7 @@ def excitation_claim(schedule: Schedule, length: Fraction | None = None) -> Clai
 
 
 def _screened(result: Excitation) -> str:
-    if result.segments <= LARGEST_EXACT:
+    if result.segments <= MAX_EXACT:
         return ""
     return " (pieces that hold no extreme were first ruled out in floats, with an error allowance)"
 

@@ -16,13 +16,13 @@ from math import comb
 import numpy as np
 from numpy.typing import NDArray
 
+from ...models.types import Array
 from .moving_integral import MovingIntegral, Segment, ShapeKey
 
-Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 EPS = float(np.finfo(float).eps)
 ROUNDINGS = 500
-LARGEST_EXACT = 2000
+MAX_EXACT = 2000
 """Up to this many pieces all are decided in rationals and nothing is screened."""
 FEW = 200
 ROUNDS = 10

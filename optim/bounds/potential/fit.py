@@ -14,12 +14,11 @@ from typing import final
 import numpy as np
 from numpy.typing import NDArray
 
+from ....models.types import Array
 from ..sets.chart import Chart
 from ..sets.momentum_sets import MomentumSet
 from ..sets.polynomials import exponents
 from ..sets.rate import rate_features
-
-Array = NDArray[np.float64]
 
 
 @final

@@ -18,11 +18,11 @@ from ..sets.momentum_sets import MomentumSet, UnitBall, has_equal_inertias
 from .fit import Fit, PotentialProgram
 from .prove import BranchAndBound
 from .separation import (
-    WIDEST_ARC,
+    MAX_ARC,
     Separation,
     Target,
-    cheap_separation,
     potential_program,
+    quick_separation,
     separation,
 )
 
@@ -108,7 +108,7 @@ def path_bound(
     found: dict[int, Separation | None] = {}
     least: Fraction | None = None
     for sign in order:
-        cheap = cheap_separation(starts[sign], target, speed)
+        cheap = quick_separation(starts[sign], target, speed)
         if least is not None and cheap >= least:
             found[sign] = None
             continue
@@ -148,7 +148,7 @@ def _nearest(
         return None  # the rotation about a fixed axis is shortest, and the angle alone says so
     if limit is not None:
         guess = min(guess, limit)
-    widest = (WIDEST_ARC - 1e-3) * 2 / speed
+    widest = (MAX_ARC - 1e-3) * 2 / speed
     least = 2 * arc / speed * (1 + 1e-3)
     highest = max(min(guess, widest), least)
     guess = highest

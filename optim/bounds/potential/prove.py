@@ -23,12 +23,10 @@ from dataclasses import dataclass, replace
 from typing import final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....models.types import Array
 from ..sets.momentum_sets import EVALUATION_SLACK, MomentumSet, TaylorBoxes
 from ..sets.polynomials import Polynomial, as_table, halving_matrices
-
-Array = NDArray[np.float64]
 
 _CORNERS = np.array([[i, j, k] for i in (-1.0, 1.0) for j in (-1.0, 1.0) for k in (-1.0, 1.0)])
 _BATCH = 2048

@@ -19,9 +19,9 @@ from fractions import Fraction
 from typing import final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ....models.rigid_body import RigidBody
+from ....models.types import Array
 from ..sets import polynomials as poly
 from ..sets.chart import Chart, Quaternion, Vector, arctangent_below, chart_between, square_root
 from ..sets.momentum_sets import MomentumSet, length_above
@@ -30,9 +30,7 @@ from ..sets.rate import exact_inverse, momentum_rate_polynomials
 from .fit import Fit, PotentialProgram
 from .prove import BranchAndBound, Supremum
 
-Array = NDArray[np.float64]
-
-WIDEST_ARC = 3.0
+MAX_ARC = 3.0
 """Largest arc sum of a region, rad, below pi."""
 
 
@@ -135,7 +133,7 @@ def potential_program(
     body: RigidBody, start: Quaternion, target: Target, momenta: MomentumSet, *, guess: float, fit: Fit
 ) -> PotentialProgram:
     """Set up the program of a potential on the region of paths of travel `guess`."""
-    arc = min(guess * float(momenta.fastest_rate()) / 2 + float(target.arc_above()) + 1e-4, WIDEST_ARC)
+    arc = min(guess * float(momenta.fastest_rate()) / 2 + float(target.arc_above()) + 1e-4, MAX_ARC)
     chart = chart_between(start, arc)
     scale = float(chart.outer)
     x_start, x_target = chart.coordinates(start)[0], target_coordinates(chart)
@@ -176,7 +174,7 @@ def reach_below(chart: Chart, start: Quaternion, target: Target, speed: Fraction
     return 2 * (chart.arc_sum - slack - target.arc_above()) / speed
 
 
-def cheap_separation(start: Quaternion, target: Target, speed: Fraction) -> Fraction:
+def quick_separation(start: Quaternion, target: Target, speed: Fraction) -> Fraction:
     """Travel from the rotation angle alone: twice the quaternion arc over the fastest rate, rounded down."""
     high = square_root(sum((c * c for c in start), Fraction(0)))[1]
     low = square_root(sum((c * c for c in start), Fraction(0)))[0]

@@ -6,11 +6,9 @@ from abc import ABC, abstractmethod
 from typing import final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....models.types import Array
 from .interior_point import maximise_in_balls, maximise_in_halfspaces
-
-Array = NDArray[np.float64]
 
 _CORNERS = np.array([[i, j, k] for i in (-1.0, 1.0) for j in (-1.0, 1.0) for k in (-1.0, 1.0)])
 

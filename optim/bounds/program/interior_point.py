@@ -9,11 +9,10 @@ are feasible up to rounding, and trusted by no one.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ....models.types import Array
 
-MOST_STEPS = 60
+MAX_STEPS = 60
 
 
 def maximise_in_halfspaces(objective: Array, rows: Array, *, gap: float) -> Array:
@@ -22,7 +21,7 @@ def maximise_in_halfspaces(objective: Array, rows: Array, *, gap: float) -> Arra
     n, m = rows.shape
     c, slack = np.zeros(m), np.ones(n)
     y = np.full(n, 1.0 / n)
-    for _ in range(MOST_STEPS):
+    for _ in range(MAX_STEPS):
         short = b - rows.T @ y
         if float(slack @ y) <= gap * max(float(b @ c), 1e-9) and np.linalg.norm(short) <= 1e-5:
             break
@@ -53,7 +52,7 @@ def maximise_in_balls(objective: Array, features: Array, *, gap: float) -> Array
     c, slack = np.zeros(m), np.full(n, 0.5)
     y = np.full(n, 1.0 / n)
     v = np.zeros((n, 3))
-    for _ in range(MOST_STEPS):
+    for _ in range(MAX_STEPS):
         over = 0.5 * (v * v).sum(axis=1) - 0.5 + slack
         short = b - rows.T @ (y[:, None] * v).ravel()
         value = max(float(b @ c), 1e-9)

@@ -29,12 +29,11 @@ from math import isqrt
 from typing import final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....models.types import Array
 from . import polynomials as poly
 from .polynomials import Polynomial
 
-Array = NDArray[np.float64]
 Vector = tuple[Fraction, Fraction, Fraction]
 Quaternion = tuple[Fraction, Fraction, Fraction, Fraction]
 

@@ -21,9 +21,9 @@ from itertools import product
 from typing import final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ....models.rigid_body import RigidBody
+from ....models.types import Array
 from ...norms import Euclidean, LargestComponent, Norm, ThrusterAxes
 from ..program.constraints import CutConstraint, RateConstraint
 from .chart import Vector, square_root
@@ -40,8 +40,6 @@ from .momentum_sets import (
 )
 from .rate import ExactMatrix, exact_inverse
 from .support_table import SupportTable
-
-Array = NDArray[np.float64]
 
 _MOST_THRUSTERS = 12
 

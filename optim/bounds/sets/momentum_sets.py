@@ -16,11 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....models.rigid_body import ExactMatrix, RigidBody
+from ....models.types import Array
 from ....verify.exact.balls import greatest_eigenvalue_above, least_eigenvalue_below
 from ..program.constraints import ConeConstraint, RateConstraint
 from .chart import Vector, square_root
-
-Array = NDArray[np.float64]
 
 IDENTITY: ExactMatrix = tuple(
     (Fraction(int(i == 0)), Fraction(int(i == 1)), Fraction(int(i == 2))) for i in range(3)

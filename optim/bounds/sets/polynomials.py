@@ -14,9 +14,9 @@ from itertools import product
 from math import comb
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ....models.types import Array
+
 Exponent = tuple[int, int, int]
 Polynomial = dict[Exponent, Fraction]
 

@@ -12,13 +12,12 @@ from __future__ import annotations
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....models.types import Array
 from . import polynomials as poly
 from .chart import Vector, squared_length
 from .polynomials import Exponent, Polynomial
 
-Array = NDArray[np.float64]
 ExactMatrix = tuple[Vector, ...]
 
 

@@ -57,7 +57,7 @@ class Cell:
 
 @final
 @dataclass(frozen=True)
-class Sides:
+class TransferSides:
     """Both sides of a transfer in cells: from the start to an instant, and mirrored from the end."""
 
     window: PiecewisePolynomial
@@ -147,7 +147,9 @@ class ComponentBounds:
     width_multipliers: tuple[tuple[Fraction, ...], ...]
 
 
-def component_bounds(momenta: GaugeSet, sides: Sides, trial: Fraction, *, rounds: int = 5) -> ComponentBounds:
+def component_bounds(
+    momenta: GaugeSet, sides: TransferSides, trial: Fraction, *, rounds: int = 5
+) -> ComponentBounds:
     """Iterate kappa and B from the widths of the invariant set.
 
     B is kept while it confirms itself, 1 + kappa(B) trial Y/up < B: that alone makes it valid, for
@@ -266,7 +268,9 @@ def _unit(axis: int) -> ExactMatrix:
     return tuple((row[0], row[1], row[2]) for row in rows)
 
 
-def peak_from_components(sides: Sides, bounds: ComponentBounds, beta: Widths, travel: Fraction) -> Fraction:
+def peak_from_components(
+    sides: TransferSides, bounds: ComponentBounds, beta: Widths, travel: Fraction
+) -> Fraction:
     """Largest p found with travel_above(p) <= travel: every smaller peak is impossible; at most the trial."""
     area = np.array([float(cell.area) for cell in sides.cells])
     ratio = np.array([float(cell.ratio) for cell in sides.cells])

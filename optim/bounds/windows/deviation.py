@@ -37,7 +37,7 @@ from .travel import WindowTravel
 CELLS = 32
 """Parts of a coast, each with the growth of its beginning."""
 
-MOST_GROWTH = 60
+MAX_GROWTH = 60
 """Exponent of a growth up to which a coast is of any use; the checker ends at 64."""
 
 _FINE = 2**64
@@ -61,7 +61,7 @@ class Growth:
 
     def allows(self, duration: Fraction) -> bool:
         """Whether a deviation stays within numbers worth writing down."""
-        return max(self.distance, self.momentum) * duration <= MOST_GROWTH
+        return max(self.distance, self.momentum) * duration <= MAX_GROWTH
 
     def factor_above(self, duration: Fraction) -> Fraction:
         """Upper bound of (exp(mu u) + exp(nu u))/2."""

@@ -13,19 +13,19 @@ from itertools import pairwise
 from typing import final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ....models.types import Array
 from ...problem import TransferProblem
 from .verify_answer import Excess, rate_function, terminal_excess
 
-Array = NDArray[np.float64]
 Torque = Callable[[Array], Array]
 """Times (n,) in s -> torques (n, 3), N m, body frame."""
 
 
 @final
 @dataclass(frozen=True)
-class FlownTorque:
+class ReplayedTorque:
     """What a torque history does in a transfer.
 
     Attributes
@@ -47,9 +47,9 @@ class FlownTorque:
         return self.terminal.worst <= terminal and self.outside_torque <= torque * max(self.peak, 1e-300)
 
 
-def fly_torque(
+def replay_torque(
     problem: TransferProblem, torque: Torque, *, knots: Iterable[float] = (), samples: int = 400
-) -> FlownTorque:
+) -> ReplayedTorque:
     """Integrate a torque history over a transfer.
 
     Parameters
@@ -90,4 +90,4 @@ def fly_torque(
         w = np.polynomial.polynomial.polyval(s, [float(c) for c in piece.shape])
         peak = max(peak, float((problem.norm.peak(values) / w).max()))
     del keep
-    return FlownTorque(terminal_excess(problem, x), peak if math.isfinite(peak) else math.inf, outside)
+    return ReplayedTorque(terminal_excess(problem, x), peak if math.isfinite(peak) else math.inf, outside)

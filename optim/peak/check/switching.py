@@ -20,10 +20,10 @@ from typing import final
 import numpy as np
 from numpy.typing import NDArray
 
+from ....models.types import Array
 from ...norms import Euclidean
 from ..solvers.scp import LocalAnswer
 
-Array = NDArray[np.float64]
 GAUSS_NODES, GAUSS_WEIGHTS = (
     np.polynomial.legendre.leggauss(8)[0] / 2 + 0.5,
     np.polynomial.legendre.leggauss(8)[1] / 2,
@@ -77,8 +77,8 @@ class SwitchingFunction:
         w = np.stack([mesh.window_at(float(s))[self.cells] for s in GAUSS_NODES], axis=1)
         measure = w * GAUSS_WEIGHTS * self.length[:, None]
         goal, flow = self.answer.goal, np.full(sigma.shape[:-1], 1.0 / float(mesh.impulse.sum()))
-        control, value = self.answer.flight.control[:, None, :], self.answer.value
-        missed = goal.worth(norm, sigma, flow) - goal.gain(norm, sigma, flow, control, value)
+        control, value = self.answer.trajectory.control[:, None, :], self.answer.value
+        missed = goal.hamiltonian_gain(norm, sigma, flow) - goal.gain(norm, sigma, flow, control, value)
         return float((measure * missed).sum() / goal.unit(value))
 
 
@@ -100,8 +100,8 @@ def switching_function(answer: LocalAnswer) -> SwitchingFunction:
     sigma = np.einsum("qj,njm->nqm", powers, coefficients)
     w = np.stack([mesh.window_at(float(s))[cells] for s in GAUSS_NODES], axis=1)
     goal, flow = answer.goal, np.full(sigma.shape[:-1], 1.0 / float(mesh.impulse.sum()))
-    ideal = ((w * GAUSS_WEIGHTS) * goal.worth(norm, sigma, flow)).sum(axis=1) * length
-    done = goal.worth(norm, integral, answer.shooting.weights)
+    ideal = ((w * GAUSS_WEIGHTS) * goal.hamiltonian_gain(norm, sigma, flow)).sum(axis=1) * length
+    done = goal.hamiltonian_gain(norm, integral, answer.shooting.weights)
     loss = np.maximum(ideal - done, 0.0) / goal.unit(answer.value)
     return SwitchingFunction(answer, cells, mesh.edges[cells], length, coefficients, loss)
 
@@ -121,18 +121,19 @@ def switch_points(sigma: SwitchingFunction, cell: int) -> list[float]:
     the Euclidean norm it is where |sigma| dips, because the direction swings round there.
     """
     answer, norm = sigma.answer, sigma.answer.shooting.scaled.problem.norm
-    share = answer.goal.share(norm, answer.flight.control[cell], answer.value)
-    if share is None:
+    switch_fraction = answer.goal.switch_fraction(norm, answer.trajectory.control[cell], answer.value)
+    if switch_fraction is None:
         grid = np.linspace(0.0, 1.0, 33)
         size = np.linalg.norm(sigma.at(grid)[cell], axis=1)
         k = int(np.argmin(size))
         turning = 0 < k < 32 and size[k] < 0.5 * min(size[0], size[-1])
         return [float(grid[k])] if turning else []
-    ends = answer.goal.throw(norm, sigma.at(np.array([0.0, 1.0]))[cell])
+    ends = answer.goal.switching_function(norm, sigma.at(np.array([0.0, 1.0]))[cell])
     rising = ends[1] - ends[0]
-    inside = (share > 1e-3) & (share < 1.0 - 1e-3)
+    inside = (switch_fraction > 1e-3) & (switch_fraction < 1.0 - 1e-3)
     return sorted(
-        float(f if up <= 0 else 1.0 - f) for f, up in zip(share[inside], rising[inside], strict=True)
+        float(f if up <= 0 else 1.0 - f)
+        for f, up in zip(switch_fraction[inside], rising[inside], strict=True)
     )
 
 
@@ -146,7 +147,7 @@ def switch_times(sigma: SwitchingFunction) -> tuple[tuple[float, int], ...]:
     norm = answer.shooting.scaled.problem.norm
     unit = answer.shooting.scaled.units.time
     inside = [(i, s) for i in range(len(sigma.cells)) for s in switch_points(sigma, i)]
-    high = answer.goal.share(norm, answer.flight.control, answer.value)
+    high = answer.goal.switch_fraction(norm, answer.trajectory.control, answer.value)
     if high is None:
         return tuple((float(sigma.start[i] + s * sigma.length[i]) * unit, -1) for i, s in inside)
     found = []
@@ -154,20 +155,20 @@ def switch_times(sigma: SwitchingFunction) -> tuple[tuple[float, int], ...]:
         last: tuple[float, float] | None = None
         for i in range(len(sigma.cells)):
             joined = i > 0 and sigma.cells[i] == sigma.cells[i - 1] + 1
-            share = float(high[i, j])
+            switch_fraction = float(high[i, j])
             start, end = float(sigma.start[i]), float(sigma.start[i] + sigma.length[i])
             if not joined:
                 last = None
-            if 1e-3 < share < 1 - 1e-3:
+            if 1e-3 < switch_fraction < 1 - 1e-3:
                 # between the limits: the switch lies inside, nearer the limit held longer
                 after = _next_side(high, i, j)
-                part = share if after < 0.5 else 1.0 - share
+                part = switch_fraction if after < 0.5 else 1.0 - switch_fraction
                 found.append((start + part * (end - start), j))
                 last = (end, after)
                 continue
-            if last is not None and abs(share - last[1]) > 0.5:
+            if last is not None and abs(switch_fraction - last[1]) > 0.5:
                 found.append((start, j))
-            last = (end, share)
+            last = (end, switch_fraction)
     whole = isinstance(norm, Euclidean)
     return tuple(sorted((t * unit, -1 if whole else j) for t, j in found))
 

@@ -14,14 +14,13 @@ from functools import lru_cache
 from typing import Any, final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ....models.schedule import Piece
+from ....models.types import Array
 from ...problem import TransferProblem
 from ..transcription.history import TorqueHistory
 from ..transcription.propagate import right_hand_side
 
-Array = NDArray[np.float64]
 TERMINAL_STANDARD = 1e-8
 """Largest terminal excess allowed: rotation angle in rad, rate times the transfer time in rad."""
 
@@ -67,7 +66,7 @@ def terminal_excess(problem: TransferProblem, end: Array) -> Excess:
 
 @final
 @dataclass(frozen=True)
-class FlownHistory:
+class ReplayedHistory:
     """A history integrated again.
 
     Attributes
@@ -103,14 +102,14 @@ class FlownHistory:
         )
 
 
-def fly_again(problem: TransferProblem, history: TorqueHistory) -> FlownHistory:
+def replay(problem: TransferProblem, history: TorqueHistory) -> ReplayedHistory:
     """Integrate a torque history independently and measure what it leaves."""
     pieces = _piece_of_cells(problem, history)
     states, evaluations, _ = _integrate(problem, history, pieces)
     closed = np.array([not piece.shape for piece in pieces])
     peak_needed = problem.norm.peak(history.base_torque[history.open]).max(initial=0.0)
     peak = max(history.peak, 1e-300)
-    return FlownHistory(
+    return ReplayedHistory(
         states=states,
         terminal=terminal_excess(problem, states[-1]),
         outside_torque=float(np.abs(history.base_torque[closed]).max(initial=0.0)),

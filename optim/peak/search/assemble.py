@@ -7,18 +7,16 @@ from dataclasses import dataclass, replace
 from typing import final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...problem import TransferProblem
 from ..check.switching import SwitchingFunction, switch_times
-from ..check.verify_answer import TERMINAL_STANDARD, fly_again
+from ..check.verify_answer import TERMINAL_STANDARD, replay
 from ..solvers.scp import LocalAnswer
 from ..transcription.history import TorqueHistory
 from ..transcription.mesh import build_mesh
 from .options import Refinement
 from .result import PeakAnswer, Search, Standing, Switching
 
-Array = NDArray[np.float64]
 GAP_STANDARD = 1e-6
 """Largest relative optimality gap of an answer called CHECKED."""
 
@@ -44,8 +42,8 @@ def checked(
     """Turn a local answer into the user's units and check it from scratch against the problem as stated."""
     units = local.shooting.scaled.units
     history = _history(problem, local)
-    flown = fly_again(problem, history)
-    ours = local.flight.states * np.r_[np.ones(4), np.full(3, 1 / units.time)]
+    flown = replay(problem, history)
+    ours = local.trajectory.states * np.r_[np.ones(4), np.full(3, 1 / units.time)]
     difference = ours - flown.states[: len(ours)]
     defect = float(np.abs(difference * np.r_[np.ones(4), np.full(3, units.time)]).max())
     faults = []
@@ -85,7 +83,7 @@ def _history(problem: TransferProblem, local: LocalAnswer) -> TorqueHistory:
     scaled, mesh = local.shooting.scaled, local.shooting.mesh
     edges, profile = mesh.edges * scaled.units.time, mesh.profile
     control = np.zeros((mesh.size, scaled.control_matrix.shape[1]))
-    control[mesh.open] = local.flight.control * scaled.units.control
+    control[mesh.open] = local.trajectory.control * scaled.units.control
     if scaled.problem.horizon < problem.horizon:
         edges = np.r_[edges, float(problem.horizon)]
         profile, control = (np.vstack([rows, np.zeros(rows.shape[1])]) for rows in (profile, control))
@@ -114,7 +112,7 @@ def at_rest_already(problem: TransferProblem) -> PeakAnswer:
     mesh = build_mesh(problem.window, [1] * len(problem.window.shapes))
     control = np.zeros((mesh.size, problem.norm.control_matrix.shape[1]))
     history = TorqueHistory(mesh.edges * float(problem.horizon), mesh.profile, control, problem.norm)
-    flown = fly_again(problem, history)
+    flown = replay(problem, history)
     empty = without_history(problem, Standing.CHECKED, "", "")
     good = flown.terminal.worst <= TERMINAL_STANDARD
     return replace(

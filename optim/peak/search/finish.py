@@ -37,7 +37,7 @@ class Finish:
         """Refine and check one local optimum."""
         local, rounds, total, solver = candidate, 0, candidate.iterations, self.solver
         sigma = switching_function(local)
-        shooting, control = local.shooting, local.flight.control
+        shooting, control = local.shooting, local.trajectory.control
         while rounds < self.refinement.max_rounds:
             rounds += 1
             local = solver.solve(shooting, control)
@@ -59,6 +59,6 @@ class Finish:
 
 def _fall_back(local: LocalAnswer) -> LocalAnswer:
     """Nonlinear program from where the fast solver stopped; whichever answer is better converged."""
-    other = NonlinearProgram().solve(local.shooting, local.flight.control)
+    other = NonlinearProgram().solve(local.shooting, local.trajectory.control)
     better = other.violation <= 1e-8 and other.gap < local.gap
     return other if better else local

@@ -7,15 +7,13 @@ window time used so far, so that different starts lead around different sides of
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....models.types import Array
 from ..transcription.history import TorqueHistory
 from ..transcription.mesh import Mesh
 from ..transcription.propagate import Propagator
 from ..transcription.shooting import Shooting
 from ..transcription.terminal import residual
-
-Array = NDArray[np.float64]
 
 
 def first_guess(shooting: Shooting) -> Array:

@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 from typing import final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....models.types import Array
 from ...norms import ThrusterAxes
 from ...problem import TransferProblem
 from ..solvers.goal import LeastImpulse
@@ -28,8 +28,6 @@ from .guess import bend, control_at
 from .minimum_peak import minimum_peak, until_last_window
 from .options import MultiStart, Refinement
 from .result import PeakAnswer, Search, Standing, Start
-
-Array = NDArray[np.float64]
 
 
 @final

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....models.types import Array
 from ...problem import TransferProblem
 from ..solvers.nlp import NonlinearProgram
 from ..solvers.scp import LocalAnswer, SequentialConvex
@@ -21,8 +21,6 @@ from .finish import Finish
 from .guess import bend, control_at, first_guess
 from .options import LocalSolver, MultiStart, Refinement
 from .result import PeakAnswer, Search, Standing, Start
-
-Array = NDArray[np.float64]
 
 
 def coarse_mesh(problem: TransferProblem, cells: int) -> Mesh:
@@ -126,7 +124,7 @@ def _same(one: LocalAnswer, other: LocalAnswer) -> bool:
     """Whether two answers on one mesh hold the same torque, as far as the search solves for it."""
     if one.shooting.sign != other.shooting.sign:
         return False
-    apart = float(np.abs(one.flight.control - other.flight.control).max())
+    apart = float(np.abs(one.trajectory.control - other.trajectory.control).max())
     return apart <= _ALIKE * one.peak
 
 

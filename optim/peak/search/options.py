@@ -5,13 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Protocol, final
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ....models.types import Array
 from ..solvers.scp import LocalAnswer
 from ..transcription.shooting import Shooting
-
-Array = NDArray[np.float64]
 
 
 class LocalSolver(Protocol):

@@ -10,14 +10,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ....models.types import Array
 from ...norms import Euclidean
 from ..check.switching import SwitchingFunction, switch_points
 from ..solvers.scp import LocalAnswer
 from ..transcription.mesh import split
 from ..transcription.shooting import Shooting
 
-Array = NDArray[np.float64]
-LONGEST_CUT = 6
+MAX_CUT = 6
 """A cell is cut into at most this many parts in one round: the estimate is local."""
 BRACKET = 0.05
 """Half of the cell left around a switch, as a fraction of the cell it was found in."""
@@ -36,7 +36,7 @@ def _parts(sigma: SwitchingFunction, target: float) -> NDArray[np.int64]:
     """Parts for each open cell: loss falls as parts^-2, so parts grow as loss^(1/3)."""
     root = np.cbrt(sigma.loss)
     wanted = root * np.sqrt(root.sum() / (0.5 * target))
-    return np.asarray(np.clip(np.ceil(wanted - 0.05), 1, LONGEST_CUT).astype(np.int64))
+    return np.asarray(np.clip(np.ceil(wanted - 0.05), 1, MAX_CUT).astype(np.int64))
 
 
 def _cuts(sigma: SwitchingFunction, cell: int, parts: int, target: float) -> list[float]:
@@ -72,8 +72,8 @@ def _apart(points: list[float]) -> list[float]:
 
 def smoothed(answer: LocalAnswer, tolerance: float) -> tuple[Shooting, Array] | None:
     """Halve every cell whose integration error exceeds the tolerance; None if none does."""
-    shooting, flight = answer.shooting, answer.flight
-    error = shooting.propagator.step_errors(flight.states, flight.torque)
+    shooting, trajectory = answer.shooting, answer.trajectory
+    error = shooting.propagator.step_errors(trajectory.states, trajectory.torque)
     if not (error > tolerance).any():
         return None
     return _carried(answer, [[0.5] if bad else [] for bad in error > tolerance])
@@ -84,6 +84,6 @@ def _carried(answer: LocalAnswer, points: list[list[float]]) -> tuple[Shooting, 
     shooting = answer.shooting
     mesh, scaled = shooting.mesh, shooting.scaled
     finer, parents = split(mesh, scaled.problem.window, points)
-    full = np.zeros((mesh.size, answer.flight.control.shape[1]))
-    full[mesh.open] = answer.flight.control
+    full = np.zeros((mesh.size, answer.trajectory.control.shape[1]))
+    full[mesh.open] = answer.trajectory.control
     return Shooting(scaled, finer, shooting.sign), full[parents][finer.open]

@@ -6,14 +6,10 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import final
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ....models.types import Array
 from ...problem import TransferProblem
-from ..check.verify_answer import FlownHistory
+from ..check.verify_answer import ReplayedHistory
 from ..transcription.history import TorqueHistory
-
-Array = NDArray[np.float64]
 
 
 class Standing(Enum):
@@ -129,7 +125,7 @@ class PeakAnswer:
     peak: float
     sign: int
     history: TorqueHistory | None
-    flown: FlownHistory | None
+    flown: ReplayedHistory | None
     switching: Switching | None
     optimality_gap: float
     mesh_gap: float

@@ -15,10 +15,10 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import NDArray
 
+from ....models.types import Array
 from ..transcription.propagate import right_hand_side
-from ..transcription.shooting import Flight, Sensitivity, Shooting
+from ..transcription.shooting import Rollout, Sensitivity, Shooting
 
-Array = NDArray[np.float64]
 GROUPS = 40
 """Pieces the controls are grouped into."""
 RANK = 24
@@ -35,7 +35,11 @@ class Curvature:
 
 
 def lagrangian_curvature(
-    shooting: Shooting, flight: Flight, sensitivity: Sensitivity, multiplier: Array, size: float
+    shooting: Shooting,
+    trajectory: Rollout,
+    sensitivity: Sensitivity,
+    multiplier: Array,
+    size: float,
 ) -> Curvature:
     """Curvature of multiplier . residual by the controls, controls measured in `size`."""
     mesh, lever = shooting.mesh, shooting.scaled.control_matrix * size
@@ -51,7 +55,7 @@ def lagrangian_curvature(
         reach = sensitivity.steps[k] @ reach + sensitivity.inputs[k] @ inputs[k]
     costate = np.einsum("i,kij->kj", multiplier, sensitivity.adjoint[1:])
     hessian = shooting.propagator.map_with_body(
-        _step_hessian(mesh.profile.shape[1] - 1), flight.states[:-1].T, flight.torque.T, costate.T
+        _step_hessian(mesh.profile.shape[1] - 1), trajectory.states[:-1].T, trajectory.torque.T, costate.T
     )
     cells = hessian.reshape(10, mesh.size, 10).transpose(1, 0, 2)
     flat = stacked.reshape(-1, d)

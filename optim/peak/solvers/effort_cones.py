@@ -10,12 +10,10 @@ from dataclasses import dataclass
 from typing import Any, final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....models.types import Array
 from ...norms import Euclidean, LargestComponent, Norm
 from .goal import Goal, LeastImpulse
-
-Array = NDArray[np.float64]
 
 
 @final

@@ -12,15 +12,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....models.types import Array
 from ...norms import Euclidean, LargestComponent, Norm
 from .optimality import control_support, dual_value, linearised_offset
 
 if TYPE_CHECKING:
-    from ..transcription.shooting import Flight, Sensitivity, Shooting
-
-Array = NDArray[np.float64]
+    from ..transcription.shooting import Rollout, Sensitivity, Shooting
 
 
 class Goal(ABC):
@@ -32,7 +30,7 @@ class Goal(ABC):
 
     @abstractmethod
     def dual(
-        self, shooting: Shooting, flight: Flight, sensitivity: Sensitivity, multiplier: Array
+        self, shooting: Shooting, trajectory: Rollout, sensitivity: Sensitivity, multiplier: Array
     ) -> tuple[float, Array]:
         """Lower bound of the linearised problem from a multiplier of the residual, and the multiplier."""
 
@@ -41,23 +39,23 @@ class Goal(ABC):
         """Effort of a control that pushes as hard as it may, at an optimum of this value."""
 
     @abstractmethod
-    def worth(self, norm: Norm, pull: Array, flow: Array) -> Array:
+    def hamiltonian_gain(self, norm: Norm, costate: Array, flow: Array) -> Array:
         """The most that a control gains against a pull (..., m) when its impulse costs `flow` (...)."""
 
     @abstractmethod
-    def gain(self, norm: Norm, pull: Array, flow: Array, control: Array, value: float) -> Array:
+    def gain(self, norm: Norm, costate: Array, flow: Array, control: Array, value: float) -> Array:
         """What a control (..., m) of this value gains against the pull, in the same measure."""
 
     @abstractmethod
     def unit(self, value: float) -> float:
-        """What a `worth` is divided by to be a fraction of the value."""
+        """What a `hamiltonian_gain` is divided by to be a fraction of the value."""
 
     @abstractmethod
-    def share(self, norm: Norm, control: Array, value: float) -> Array | None:
+    def switch_fraction(self, norm: Norm, control: Array, value: float) -> Array | None:
         """How far each switch is thrown, 0 to 1, (..., m) -> (..., j); None without switches."""
 
     @abstractmethod
-    def throw(self, norm: Norm, pull: Array) -> Array:
+    def switching_function(self, norm: Norm, costate: Array) -> Array:
         """Rise of the pull, (..., m) -> (..., j): through a threshold where a switch is thrown."""
 
 
@@ -71,41 +69,41 @@ class LeastPeak(Goal):
         return float(shooting.scaled.problem.norm.effort(control).max())
 
     def dual(
-        self, shooting: Shooting, flight: Flight, sensitivity: Sensitivity, multiplier: Array
+        self, shooting: Shooting, trajectory: Rollout, sensitivity: Sensitivity, multiplier: Array
     ) -> tuple[float, Array]:
         """Dual value, the multiplier normalised so that the whole pull is worth one."""
-        return dual_value(shooting, flight, sensitivity, multiplier)
+        return dual_value(shooting, trajectory, sensitivity, multiplier)
 
     def level(self, value: float) -> float:
         """The peak itself."""
         return value
 
-    def worth(self, norm: Norm, pull: Array, flow: Array) -> Array:
+    def hamiltonian_gain(self, norm: Norm, costate: Array, flow: Array) -> Array:
         """Support of the pull: what unit effort does."""
         del flow
-        return control_support(norm, pull)
+        return control_support(norm, costate)
 
-    def gain(self, norm: Norm, pull: Array, flow: Array, control: Array, value: float) -> Array:
+    def gain(self, norm: Norm, costate: Array, flow: Array, control: Array, value: float) -> Array:
         """Pull . control for each unit of the peak."""
         del norm, flow
-        return np.asarray((pull * control).sum(axis=-1)) / value
+        return np.asarray((costate * control).sum(axis=-1)) / value
 
     def unit(self, value: float) -> float:
         """One: the multiplier's normalisation makes it a fraction already."""
         del value
         return 1.0
 
-    def share(self, norm: Norm, control: Array, value: float) -> Array | None:
+    def switch_fraction(self, norm: Norm, control: Array, value: float) -> Array | None:
         """From one limit to the other; a ball has no switches, its direction turns."""
         if isinstance(norm, Euclidean):
             return None
         low = -1.0 if isinstance(norm, LargestComponent) else 0.0
         return np.asarray((control / value - low) / (1.0 - low))
 
-    def throw(self, norm: Norm, pull: Array) -> Array:
+    def switching_function(self, norm: Norm, costate: Array) -> Array:
         """The pull on each component."""
         del norm
-        return pull
+        return costate
 
 
 @final
@@ -126,40 +124,40 @@ class LeastImpulse(Goal):
         return float(shooting.weights @ shooting.scaled.problem.norm.consumption(control))
 
     def dual(
-        self, shooting: Shooting, flight: Flight, sensitivity: Sensitivity, multiplier: Array
+        self, shooting: Shooting, trajectory: Rollout, sensitivity: Sensitivity, multiplier: Array
     ) -> tuple[float, Array]:
         """Minimum of the Lagrangian over all controls within the limit."""
         norm = shooting.scaled.problem.norm
-        pull = -np.einsum("i,ikm->km", multiplier, sensitivity.terminal)
-        offset = linearised_offset(shooting, flight, sensitivity, multiplier)
-        return offset - float(self.worth(norm, pull, shooting.weights).sum()), multiplier
+        costate = -np.einsum("i,ikm->km", multiplier, sensitivity.terminal)
+        offset = linearised_offset(shooting, trajectory, sensitivity, multiplier)
+        return offset - float(self.hamiltonian_gain(norm, costate, shooting.weights).sum()), multiplier
 
     def level(self, value: float) -> float:
         """The limit."""
         del value
         return self.limit
 
-    def worth(self, norm: Norm, pull: Array, flow: Array) -> Array:
+    def hamiltonian_gain(self, norm: Norm, costate: Array, flow: Array) -> Array:
         """Limit times what the pull exceeds the cost of the impulse by."""
-        over = self.throw(norm, pull) - flow[..., None]
+        over = self.switching_function(norm, costate) - flow[..., None]
         return np.asarray(self.limit * np.maximum(over, 0.0).sum(axis=-1))
 
-    def gain(self, norm: Norm, pull: Array, flow: Array, control: Array, value: float) -> Array:
+    def gain(self, norm: Norm, costate: Array, flow: Array, control: Array, value: float) -> Array:
         """Pull . control less the cost of its impulse."""
         del value
-        return np.asarray((pull * control).sum(axis=-1) - flow * norm.consumption(control))
+        return np.asarray((costate * control).sum(axis=-1) - flow * norm.consumption(control))
 
     def unit(self, value: float) -> float:
         """The value."""
         return max(value, 1e-300)
 
-    def share(self, norm: Norm, control: Array, value: float) -> Array | None:
+    def switch_fraction(self, norm: Norm, control: Array, value: float) -> Array | None:
         """From off to the limit."""
         del value
-        return self.throw(norm, control) / self.limit
+        return self.switching_function(norm, control) / self.limit
 
-    def throw(self, norm: Norm, pull: Array) -> Array:
+    def switching_function(self, norm: Norm, costate: Array) -> Array:
         """Length, size of each component, or each thruster's own."""
         if isinstance(norm, Euclidean):
-            return np.asarray(np.linalg.norm(pull, axis=-1)[..., None])
-        return np.abs(pull) if isinstance(norm, LargestComponent) else np.asarray(pull)
+            return np.asarray(np.linalg.norm(costate, axis=-1)[..., None])
+        return np.abs(costate) if isinstance(norm, LargestComponent) else np.asarray(costate)

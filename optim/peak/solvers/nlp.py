@@ -13,14 +13,14 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import NDArray
 
+from ....models.types import Array
 from ...norms import Euclidean, LargestComponent, Norm
 from ..transcription.propagate import right_hand_side
-from ..transcription.shooting import Flight, Shooting
+from ..transcription.shooting import Rollout, Shooting
 from ..transcription.terminal import residual_derivative
 from .optimality import dual_value
 from .scp import LocalAnswer, reference_control
 
-Array = NDArray[np.float64]
 POINTS = 3
 """Gauss points in a cell."""
 STOPPED_WELL = ("Solve_Succeeded", "Solved_To_Acceptable_Level")
@@ -56,11 +56,11 @@ class NonlinearProgram:
 
     def solve(self, shooting: Shooting, control: Array, *, tolerance: float | None = None) -> LocalAnswer:
         """Local optimum near the flight of a control, or the reason for there being none."""
-        flight = shooting.fly(control)
-        size = reference_control(shooting, flight)
+        trajectory = shooting.fly(control)
+        size = reference_control(shooting, trajectory)
         transcription = _Transcription(shooting, size)
         z, multiplier, status, iterations = transcription.solve(
-            flight, tolerance=min(self.tolerance, tolerance or 1.0), max_iterations=self.max_iterations
+            trajectory, tolerance=min(self.tolerance, tolerance or 1.0), max_iterations=self.max_iterations
         )
         landed = shooting.fly(transcription.control(z))
         landed = _landed(shooting, landed)
@@ -73,17 +73,17 @@ class NonlinearProgram:
         return LocalAnswer(shooting, landed, sensitivity, multiplier, peak, gap, iterations, reason)
 
 
-def _landed(shooting: Shooting, flight: Flight) -> Flight:
+def _landed(shooting: Shooting, trajectory: Rollout) -> Rollout:
     """Remove the collocation error left at the terminal by Newton steps of least weighted size."""
     exact = np.repeat([t == 0.0 for t in shooting.tolerances], 3)
     for _ in range(3):
-        if not exact.any() or np.abs(flight.residual[exact]).max() < 1e-11:
+        if not exact.any() or np.abs(trajectory.residual[exact]).max() < 1e-11:
             break
-        G = shooting.sensitivity(flight).flat()[exact]
-        weight = np.repeat(1.0 / shooting.weights, flight.control.shape[1])
-        change = weight * (G.T @ np.linalg.solve((G * weight) @ G.T, flight.residual[exact]))
-        flight = shooting.fly(flight.control - change.reshape(flight.control.shape))
-    return flight
+        G = shooting.sensitivity(trajectory).flat()[exact]
+        weight = np.repeat(1.0 / shooting.weights, trajectory.control.shape[1])
+        change = weight * (G.T @ np.linalg.solve((G * weight) @ G.T, trajectory.residual[exact]))
+        trajectory = shooting.fly(trajectory.control - change.reshape(trajectory.control.shape))
+    return trajectory
 
 
 def _gauss() -> tuple[Array, Array, Array]:
@@ -170,7 +170,7 @@ class _Transcription:
         return rows
 
     def solve(
-        self, flight: Flight, *, tolerance: float, max_iterations: int
+        self, trajectory: Rollout, *, tolerance: float, max_iterations: int
     ) -> tuple[Array, Array, str, int]:
         """Run IPOPT from a flight; returns variables, row multipliers, IPOPT's word, iterations."""
         import casadi as ca
@@ -195,20 +195,20 @@ class _Transcription:
         low, high = np.full(total, -np.inf), np.full(total, np.inf)
         low[:7] = high[:7] = self.shooting.scaled.start
         low[-1] = 0.0
-        answer = solver(x0=self._start(flight), lbx=low, ubx=high, lbg=self.lower, ubg=self.upper)
+        answer = solver(x0=self._start(trajectory), lbx=low, ubx=high, lbg=self.lower, ubg=self.upper)
         stats = solver.stats()
         z, multiplier = answer["x"].full().ravel(), answer["lam_g"].full().ravel()
         return z, multiplier, str(stats["return_status"]), int(stats["iter_count"])
 
-    def _start(self, flight: Flight) -> Array:
+    def _start(self, trajectory: Rollout) -> Array:
         """Variables of a flight: states at the nodes from the chord of each cell."""
-        chord = np.diff(flight.states, axis=0)
-        inner = flight.states[:-1, None, :] + self.nodes[:, None] * chord[:, None, :]
-        control = flight.control / self.size
+        chord = np.diff(trajectory.states, axis=0)
+        inner = trajectory.states[:-1, None, :] + self.nodes[:, None] * chord[:, None, :]
+        control = trajectory.control / self.size
         peak = float(self.shooting.scaled.problem.norm.effort(control).max())
         return np.concatenate(
             [
-                flight.states.ravel(),
+                trajectory.states.ravel(),
                 inner.ravel(),
                 control.ravel(),
                 [1.05 * peak + 1e-3],
@@ -220,7 +220,7 @@ class _Transcription:
         first = self.counts[0] + self.counts[1]
         return np.asarray(z[first : first + self.counts[2]].reshape(self.cells, self.m) * self.size)
 
-    def terminal_multiplier(self, multiplier: Array, landed: Flight) -> Array:
+    def terminal_multiplier(self, multiplier: Array, landed: Rollout) -> Array:
         """Multiplier of the rotation-vector residual from IPOPT's of the terminal rows."""
         import casadi as ca
 

@@ -13,12 +13,10 @@ computed from the answer alone, outside any solver.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....models.types import Array
 from ...norms import Euclidean, LargestComponent, Norm
-from ..transcription.shooting import Flight, Sensitivity, Shooting
-
-Array = NDArray[np.float64]
+from ..transcription.shooting import Rollout, Sensitivity, Shooting
 
 
 def control_support(norm: Norm, direction: Array) -> Array:
@@ -31,23 +29,23 @@ def control_support(norm: Norm, direction: Array) -> Array:
 
 
 def dual_value(
-    shooting: Shooting, flight: Flight, sensitivity: Sensitivity, multiplier: Array
+    shooting: Shooting, trajectory: Rollout, sensitivity: Sensitivity, multiplier: Array
 ) -> tuple[float, Array]:
     """Lower bound of the linearised problem from a multiplier, and that multiplier normalised."""
     norm = shooting.scaled.problem.norm
-    pull = -np.einsum("i,ikm->km", multiplier, sensitivity.terminal)
-    total = float(control_support(norm, pull).sum())
+    costate = -np.einsum("i,ikm->km", multiplier, sensitivity.terminal)
+    total = float(control_support(norm, costate).sum())
     if total <= 0.0:
         return 0.0, np.zeros(6)
     y = multiplier / total
-    return linearised_offset(shooting, flight, sensitivity, y), y
+    return linearised_offset(shooting, trajectory, sensitivity, y), y
 
 
 def linearised_offset(
-    shooting: Shooting, flight: Flight, sensitivity: Sensitivity, multiplier: Array
+    shooting: Shooting, trajectory: Rollout, sensitivity: Sensitivity, multiplier: Array
 ) -> float:
     """Return y . (r - G v) - tolerance . |y|: what a multiplier makes of the terminal rows alone."""
-    offset = flight.residual - np.einsum("ikm,km->i", sensitivity.terminal, flight.control)
+    offset = trajectory.residual - np.einsum("ikm,km->i", sensitivity.terminal, trajectory.control)
     value = float(multiplier @ offset)
     for block, tolerance in enumerate(shooting.tolerances):
         value -= tolerance * float(np.linalg.norm(multiplier[3 * block : 3 * block + 3]))

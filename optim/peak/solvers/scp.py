@@ -12,14 +12,13 @@ from dataclasses import dataclass, field
 from typing import final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..transcription.shooting import Flight, Sensitivity, Shooting
+from ....models.types import Array
+from ..transcription.shooting import Rollout, Sensitivity, Shooting
 from .curvature import Curvature, lagrangian_curvature
 from .goal import Goal, LeastPeak
 from .subproblem import ConeProgram, ConvexStep, Linearisation
 
-Array = NDArray[np.float64]
 SLOW = 8
 """Accepted steps after which second derivatives are worth their cost."""
 SLOW_SLACK = 100.0
@@ -44,7 +43,7 @@ class LocalAnswer:
     """
 
     shooting: Shooting
-    flight: Flight
+    trajectory: Rollout
     sensitivity: Sensitivity
     multiplier: Array
     value: float
@@ -56,7 +55,7 @@ class LocalAnswer:
     @property
     def peak(self) -> float:
         """Largest effort of the control."""
-        return float(self.shooting.scaled.problem.norm.effort(self.flight.control).max())
+        return float(self.shooting.scaled.problem.norm.effort(self.trajectory.control).max())
 
     @property
     def level(self) -> float:
@@ -71,7 +70,7 @@ class LocalAnswer:
     @property
     def violation(self) -> float:
         """Largest terminal violation, solver units."""
-        return float(self.shooting.violations(self.flight.residual).max())
+        return float(self.shooting.violations(self.trajectory.residual).max())
 
 
 @final
@@ -136,11 +135,11 @@ class _Loop:
 
     def __init__(self, shooting: Shooting, control: Array, damping: float, goal: Goal) -> None:
         self.shooting, self.goal, norm = shooting, goal, shooting.scaled.problem.norm
-        self.flight = shooting.fly(control)
-        self.size = reference_control(shooting, self.flight)
+        self.trajectory = shooting.fly(control)
+        self.size = reference_control(shooting, self.trajectory)
         self.program = ConeProgram(goal, self.size, norm, shooting.weights, shooting.tolerances)
-        self.sensitivity = shooting.sensitivity(self.flight)
-        self.value = goal.value(shooting, self.flight.control)
+        self.sensitivity = shooting.sensitivity(self.trajectory)
+        self.value = goal.value(shooting, self.trajectory.control)
         self.damping, self.penalty = damping, 10.0
         self.multiplier, self.gap = np.zeros(6), np.inf
         self.curvature: Curvature | None = None
@@ -149,17 +148,19 @@ class _Loop:
     @property
     def violation(self) -> float:
         """Largest terminal violation of the current flight."""
-        return float(self.shooting.violations(self.flight.residual).max())
+        return float(self.shooting.violations(self.trajectory.residual).max())
 
     def advance(self) -> bool:
         """Make one accepted step; False if none lowers the merit."""
         for _ in range(12):
             at = Linearisation(
-                self.flight.control / self.size, self.flight.residual, self.sensitivity.flat() * self.size
+                self.trajectory.control / self.size,
+                self.trajectory.residual,
+                self.sensitivity.flat() * self.size,
             )
             step = self._program(at)
             trial = self.shooting.fly(step.control * self.size)
-            predicted = self._merit(self.flight) - step.value - step.bend - self.penalty * step.slack
+            predicted = self._merit(self.trajectory) - step.value - step.bend - self.penalty * step.slack
             if self.curvature is not None:
                 step, trial = self._corrected(at, step, trial)
             ratio = -self._loss(trial) / predicted if predicted > 0 else 0.0
@@ -175,23 +176,23 @@ class _Loop:
         self.iterations += 1
         return self.program.solve(at, penalty=self.penalty, damping=self.damping, curvature=self.curvature)
 
-    def _corrected(self, at: Linearisation, step: ConvexStep, trial: Flight) -> tuple[ConvexStep, Flight]:
+    def _corrected(self, at: Linearisation, step: ConvexStep, trial: Rollout) -> tuple[ConvexStep, Rollout]:
         """Second-order correction: the same program with the residual the trial really had."""
         shift = trial.residual - at.derivative @ (step.control - at.control).ravel()
         other = self._program(Linearisation(at.control, shift, at.derivative))
-        flight = self.shooting.fly(other.control * self.size)
-        return (other, flight) if self._merit(flight) < self._merit(trial) else (step, trial)
+        trajectory = self.shooting.fly(other.control * self.size)
+        return (other, trajectory) if self._merit(trajectory) < self._merit(trial) else (step, trial)
 
-    def _merit(self, flight: Flight) -> float:
-        value = self.goal.value(self.shooting, flight.control) / self.size
-        return value + self.penalty * float(self.shooting.violations(flight.residual).sum())
+    def _merit(self, trajectory: Rollout) -> float:
+        value = self.goal.value(self.shooting, trajectory.control) / self.size
+        return value + self.penalty * float(self.shooting.violations(trajectory.residual).sum())
 
-    def _loss(self, trial: Flight) -> float:
+    def _loss(self, trial: Rollout) -> float:
         """How much a trial raises the merit."""
-        return self._merit(trial) - self._merit(self.flight)
+        return self._merit(trial) - self._merit(self.trajectory)
 
-    def _accept(self, step: ConvexStep, trial: Flight, ratio: float) -> None:
-        self.flight, self.accepted = trial, self.accepted + 1
+    def _accept(self, step: ConvexStep, trial: Rollout, ratio: float) -> None:
+        self.trajectory, self.accepted = trial, self.accepted + 1
         self.value = self.goal.value(self.shooting, trial.control)
         self.sensitivity = self.shooting.sensitivity(trial)
         dual, self.multiplier = self.goal.dual(
@@ -205,14 +206,14 @@ class _Loop:
 
     def _bend(self, multiplier: Array) -> None:
         self.curvature = lagrangian_curvature(
-            self.shooting, self.flight, self.sensitivity, multiplier, self.size
+            self.shooting, self.trajectory, self.sensitivity, multiplier, self.size
         )
 
     def answer(self, reason: str) -> LocalAnswer:
         """Hand over the current flight."""
         return LocalAnswer(
             self.shooting,
-            self.flight,
+            self.trajectory,
             self.sensitivity,
             self.multiplier,
             self.value,
@@ -223,9 +224,11 @@ class _Loop:
         )
 
 
-def reference_control(shooting: Shooting, flight: Flight) -> float:
+def reference_control(shooting: Shooting, trajectory: Rollout) -> float:
     """Size of control that makes peaks near one: what the travel asks for."""
-    travel = max(float(np.linalg.norm(flight.residual[:3])), 2.0 * abs(shooting.scaled.problem.angle), 0.1)
+    travel = max(
+        float(np.linalg.norm(trajectory.residual[:3])), 2.0 * abs(shooting.scaled.problem.angle), 0.1
+    )
     stop = float(np.linalg.norm(shooting.scaled.momentum))
     total = float(shooting.mesh.impulse.sum())
     return (2.0 * travel + stop) / total

@@ -14,14 +14,12 @@ from dataclasses import dataclass
 from typing import Any, final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....models.types import Array
 from ...norms import Norm
 from .curvature import Curvature
 from .effort_cones import effort_cones
 from .goal import Goal
-
-Array = NDArray[np.float64]
 
 
 @final

@@ -9,9 +9,8 @@ from typing import final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ....models.types import Array
 from ...norms import Norm
-
-Array = NDArray[np.float64]
 
 
 @final

@@ -15,8 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....models.schedule import PiecewisePolynomial
-
-Array = NDArray[np.float64]
+from ....models.types import Array
 
 
 @final

@@ -13,13 +13,12 @@ from functools import cached_property, lru_cache
 from typing import Any, final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ....models.rigid_body import attitude_rate, momentum_rate
+from ....models.types import Array
 from .mesh import Mesh
 from .scaling import ScaledProblem
 
-Array = NDArray[np.float64]
 R = math.sqrt(21.0)
 STAGES: tuple[tuple[float, ...], ...] = (
     (),

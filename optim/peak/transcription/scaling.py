@@ -10,11 +10,9 @@ from dataclasses import dataclass
 from typing import final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....models.types import Array
 from ...problem import TransferProblem
-
-Array = NDArray[np.float64]
 
 
 @final

@@ -10,20 +10,18 @@ from functools import cached_property
 from typing import final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....models.types import Array
 from ...norms import ThrusterAxes
 from .mesh import Mesh
 from .propagate import Propagator
 from .scaling import ScaledProblem
 from .terminal import residual, residual_derivative
 
-Array = NDArray[np.float64]
-
 
 @final
 @dataclass(frozen=True)
-class Flight:
+class Rollout:
     """A control and the trajectory it makes (solver units).
 
     Attributes
@@ -102,19 +100,19 @@ class Shooting:
         share = self.mesh.impulse[self.mesh.open]
         return np.asarray(share / share.sum())
 
-    def fly(self, control: Array) -> Flight:
+    def fly(self, control: Array) -> Rollout:
         """Trajectory of a control (one-sided thrust is clipped at zero)."""
         if isinstance(self.scaled.problem.norm, ThrusterAxes):
             control = np.maximum(control, 0.0)
         torque = np.zeros((self.mesh.size, 3))
         torque[self.mesh.open] = control @ self.scaled.control_matrix.T
         states = self.propagator.states(torque)
-        return Flight(control, torque, states, residual(states[-1], self.sign))
+        return Rollout(control, torque, states, residual(states[-1], self.sign))
 
-    def sensitivity(self, flight: Flight) -> Sensitivity:
+    def sensitivity(self, trajectory: Rollout) -> Sensitivity:
         """Derivative of the terminal residual, by one sweep backwards over the cells."""
-        A, B = self.propagator.derivatives(flight.states, flight.torque)
-        E = residual_derivative(flight.states[-1], self.sign)
+        A, B = self.propagator.derivatives(trajectory.states, trajectory.torque)
+        E = residual_derivative(trajectory.states[-1], self.sign)
         n = self.mesh.size
         adjoint = np.empty((n + 1, 6, 7))
         adjoint[n] = E

@@ -9,9 +9,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ....models.types import Array
 
 
 def residual(state: Array, sign: int) -> Array:

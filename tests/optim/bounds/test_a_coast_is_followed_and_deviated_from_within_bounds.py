@@ -139,7 +139,7 @@ def test_long_numbers_do_not_make_a_coast_long():
     assert max(abs(x - y) for x, y in zip(a, b, strict=True)) < Fraction(1, 10**20)
 
 
-def test_a_coast_of_a_body_that_spins_about_an_axis_is_that_rotation():
+def test_coast_of_a_spin_about_an_axis_is_that_rotation():
     case = problem(SPHERE, ("0", "0", "0.25"), attitude=(Fraction(1), Fraction(0), Fraction(0), Fraction(0)))
     for coast in coasts(case)[1:]:
         q = [float(c) for c in coast.attitude]

@@ -8,7 +8,7 @@ from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import PiecewisePolynomial
 from intermit.optim.bounds.sets.gauge import invariant_set, torque_vertices
 from intermit.optim.bounds.windows.components import (
-    Sides,
+    TransferSides,
     component_bounds,
     gyroscopic_bound,
     gyroscopic_form,
@@ -105,7 +105,7 @@ def test_gyroscopic_bound_is_above_samples():
 
 def test_components_stay_within_their_bounds():
     windows = WindowTravel(ONE)
-    sides = Sides(ONE, windows.instant(windows.total / 2))
+    sides = TransferSides(ONE, windows.instant(windows.total / 2))
     trial = Fraction(1, 10)
     momenta = invariant_set(LONG, LargestComponent())
     bounds = component_bounds(momenta, sides, trial)
@@ -120,7 +120,7 @@ def test_components_stay_within_their_bounds():
 
 def test_a_peak_from_components_never_exceeds_its_trial():
     windows = WindowTravel(ONE)
-    sides = Sides(ONE, windows.instant(windows.total / 2))
+    sides = TransferSides(ONE, windows.instant(windows.total / 2))
     momenta = invariant_set(LONG, LargestComponent())
     beta = (Fraction(1), Fraction(1), Fraction(1))
     for trial in (Fraction(1, 100), Fraction(1, 10), Fraction(1)):

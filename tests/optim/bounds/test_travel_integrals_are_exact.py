@@ -53,7 +53,7 @@ def test_start_momentum_lowers_the_peak_and_must_be_absorbed():
     assert momentum_peak(windows, Fraction(10), Fraction(0)) == 10 / windows.total
 
 
-def test_every_instant_gives_a_valid_bound_and_the_chosen_one_is_nearly_best():
+def test_every_instant_is_valid_and_the_chosen_nearly_best():
     windows = WindowTravel(window_profile(PAPER, Fraction("51.22"), WindowProfile.FULL))
     travel, start, end = Fraction(6), Fraction(1, 50), Fraction(1, 100)
     best = least_peak(windows, travel, start, end).value

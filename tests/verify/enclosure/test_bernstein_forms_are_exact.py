@@ -41,7 +41,7 @@ def test_ring_operations_agree_with_power_form():
         assert value(p.elevated(6), x) == a
 
 
-def test_slopes_over_a_step_are_exact_for_rationals_and_for_floats_at_their_binary_value():
+def test_slopes_are_exact_for_rationals_and_binary_floats():
     length = F(7, 30)
     for controls in ([F(1, 3), -2, F(5, 7), 1], [0.1, -3e-200, 1e12, 5e-324], [0.25], [F(1, 9), 0.3]):
         form, slope = Bernstein.with_derivative(controls, length)

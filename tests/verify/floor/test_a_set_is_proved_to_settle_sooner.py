@@ -9,7 +9,7 @@ from intermit.models.simulation import settling_time, simulate
 from intermit.verify.filter.certify import FloorOptions, certify_floor
 from intermit.verify.filter.comparison import BodyBounds
 from intermit.verify.filter.convergence import analyse_convergence
-from intermit.verify.filter.refine import settle_sooner
+from intermit.verify.filter.refine import tighten_settling_time
 from intermit.verify.filter.sets import InitialSet
 from problems import ADAPTIVE, J1, PERSISTENCE, paper_schedule
 
@@ -21,7 +21,7 @@ TOLERANCE = {"attitude": 0.01, "rate": 0.01}
 @pytest.fixture(scope="module")
 def floors():
     first = certify_floor(ADAPTIVE, BOUNDS, paper_schedule(), EXAMPLE)
-    return first, settle_sooner(first, **TOLERANCE)
+    return first, tighten_settling_time(first, **TOLERANCE)
 
 
 def settled(floor):
@@ -37,18 +37,18 @@ def test_the_proved_time_falls_and_the_floor_does_not(floors):
 
 def test_the_bins_still_cover_the_set(floors):
     _, refined = floors
-    boxes = [w.initial for w in refined.witnesses]
+    boxes = [w.initial for w in refined.flowpipes]
     area = sum((b.s_high - b.s_low) * (b.y_high - b.y_low) for b in boxes)
     assert area == pytest.approx(EXAMPLE.s_high * EXAMPLE.y_high, rel=1e-9)
 
 
 def test_no_move_leaves_it_as_it_is(floors):
     first, _ = floors
-    assert settle_sooner(first, **TOLERANCE, options=FloorOptions(settling_moves=0)) == first
+    assert tighten_settling_time(first, **TOLERANCE, options=FloorOptions(settling_moves=0)) == first
     finite = build_schedule([Window(F(0), F(3)), Window(F(8), F(11))], Hermite())
     for law, schedule in ((PERSISTENCE, paper_schedule()), (ADAPTIVE, finite)):
         floor = certify_floor(law, BOUNDS, schedule, EXAMPLE, options=FloorOptions(max_bins=2))
-        assert settle_sooner(floor, **TOLERANCE) is floor
+        assert tighten_settling_time(floor, **TOLERANCE) is floor
 
 
 @pytest.mark.slow
@@ -59,7 +59,7 @@ def test_no_run_settles_later(floors):
     generator = np.random.default_rng(3)
     latest = 0.0
     for n in range(12):
-        box = refined.witnesses[n % len(refined.witnesses)].initial
+        box = refined.flowpipes[n % len(refined.flowpipes)].initial
         s, y = (box.s_low, box.y_high) if n % 2 else (box.s_high, box.y_low)
         axis, spin = (v / np.linalg.norm(v) for v in generator.normal(size=(2, 3)))
         b0 = 1 - s**2

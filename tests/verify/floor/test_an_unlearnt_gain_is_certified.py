@@ -41,12 +41,12 @@ def test_the_checker_follows_a_gain_that_is_held_at_zero():
     found = answer(replace(QUESTION, schedule=table))
     (claim, *_) = found.claims
     assert claim.verdict is Verdict.PROVED
-    assert any("held" in step.modes for w in found.floor.witnesses for step in w.steps)
+    assert any("held" in step.modes for w in found.floor.flowpipes for step in w.steps)
     (finding,) = checker.check_text(certificate_text([claim.evidence[0].details["certificate"]]))
     assert finding.valid
 
 
-def test_a_set_with_the_target_in_it_is_undecided_for_the_true_reason():
+def test_a_set_holding_the_target_is_undecided_truly():
     for claim in answer(QUESTION).claims:
         assert claim.verdict is Verdict.UNDECIDED
         assert "k(0) = 0" in claim.reason

@@ -47,7 +47,7 @@ def test_paper_scenario_is_proved_and_bounds_its_own_run(law):
     assert np.all(run.controller_state("R", t) >= bounds["filter"])
 
 
-def test_a_torque_limit_below_the_bound_is_undecided_with_both_numbers():
+def test_torque_limit_below_the_bound_is_undecided():
     claim = by_key(answer(replace(QUESTION, torque_limit=F(5), run_peak=12.05)))["torque.limit"]
     assert claim.verdict is Verdict.UNDECIDED
     assert "exceeds the limit" in claim.reason

@@ -64,7 +64,7 @@ def test_rate_of_the_adaptive_gain():
     assert not np.allclose(dk, 0.1 * R * g**2 * (y**2 + 2 * s**2), rtol=1e-2)
 
 
-def test_scaled_variables_of_the_persistence_filter_lose_the_gain():
+def test_scaled_variables_of_the_filter_lose_the_gain():
     """v = y sqrt(R) decays like exp(-lambda t/2); z = s sqrt(R) obeys a linear inequality."""
     _, y, dy, s, ds, R, dR, _, _ = rates(PERSISTENCE, J1, np.random.default_rng(3))
     root = np.sqrt(R)

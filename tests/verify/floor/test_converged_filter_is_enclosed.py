@@ -67,7 +67,7 @@ def test_a_filter_that_nearly_empties_is_enclosed_as_tightly(decay):
     assert floor.high < closing * np.exp(-4.8 * float(decay)) * (1 + 1e-9)
 
 
-def test_a_filter_below_the_working_precision_is_bounded_by_zero(monkeypatch):
+def test_filter_below_working_precision_is_bounded_by_zero(monkeypatch):
     monkeypatch.setattr(converged, "MAX_EVALUATIONS", 50)  # it would search in vain
     floor = ConvergedFilter(paper_schedule(), F(60)).floor()
     assert 0 <= floor.low <= floor.high

@@ -91,9 +91,9 @@ def test_a_wide_set_stops_with_an_instant_not_a_number():
     """From 300 deg with a fast spin the angle bound passes 2 pi: no claim beyond that time."""
     wide = InitialSet.from_bounds(BOUNDS, max_angle_deg=F(300), max_weighted_rate=F(2))
     floor = certify_floor(ADAPTIVE, BOUNDS, paper_schedule(), wide, options=FloorOptions(max_bins=2))
-    assert floor.stuck is not None
+    assert floor.failed_at is not None
     assert floor.horizon is not None
-    assert floor.horizon <= floor.stuck < 8
+    assert floor.horizon <= floor.failed_at < 8
 
 
 def test_finite_tables_are_covered_to_the_horizon():
@@ -117,7 +117,7 @@ def test_sets_hold_their_states():
 
 
 @pytest.mark.parametrize("law", [PERSISTENCE, ADAPTIVE])
-def test_long_tables_are_covered_though_the_state_fades_to_nothing(law):
+def test_long_tables_are_covered_as_the_state_vanishes(law):
     """After 45 periods the angle is below 1e-8: no bound underflows or drowns in rounding."""
     windows = [Window(F(8 * k) + F("0.01"), F(8 * k) + F("3.21")) for k in range(45)]
     finite = build_schedule(windows, Hermite(F("0.01")))
@@ -125,15 +125,15 @@ def test_long_tables_are_covered_though_the_state_fades_to_nothing(law):
     start = InitialSet.from_state(J1, [F(1, 2)] * 4, [F(0)] * 3)
     floor = certify_floor(law, BOUNDS, finite, start, horizon=F(360), options=options)
     assert floor.horizon == 360
-    assert floor.witnesses[0].boxes[-1].cosine_gap < 1e-16
+    assert floor.flowpipes[0].boxes[-1].cosine_gap < 1e-16
 
 
-def test_endless_periods_of_very_many_windows_are_cut_not_chewed():
+def test_periods_of_many_windows_are_truncated():
     windows = [Window(F(4 * k), F(4 * k + 2)) for k in range(150)]
     schedule = build_schedule(windows, Hermite(), period=F(600))
     floor = certify_floor(PERSISTENCE, BOUNDS, schedule, EXAMPLE)
     assert floor.horizon == 400
-    assert floor.stuck is None
+    assert floor.failed_at is None
 
 
 @pytest.mark.parametrize(("law", "gap"), [(PERSISTENCE, 16), (ADAPTIVE, 12), (ADAPTIVE, 40)])
@@ -178,5 +178,5 @@ def test_the_time_covered_is_that_of_the_witness_which_ends():
     start = InitialSet.from_bounds(BOUNDS, max_angle_deg=F(60), max_weighted_rate=F("0.005"))
     options = FloorOptions(max_bins=4, max_periods=4)
     floor = certify_floor(law, BOUNDS, schedule, start, options=options)
-    without = [w.end for w in floor.witnesses if w.tail is None]
+    without = [w.end for w in floor.flowpipes if w.tail is None]
     assert floor.horizon == min(without, default=None)

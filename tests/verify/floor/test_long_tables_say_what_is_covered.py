@@ -4,7 +4,7 @@ from fractions import Fraction as F
 
 import pytest
 from intermit.models.schedule import Ramps, Window, build_schedule
-from intermit.verify.filter.answer import LONGEST_TABLE, answer
+from intermit.verify.filter.answer import MAX_TABLE_WINDOWS, answer
 from intermit.verify.filter.question import FloorQuestion
 from intermit.verify.schedule.excitation import excitation_claim
 from intermit.verify.schedule.facts import schedule_claims
@@ -33,9 +33,9 @@ def test_more_than_a_hundred_windows_are_all_covered():
 
 
 def test_of_a_longer_table_the_claims_say_up_to_when_they_speak():
-    schedule = table(LONGEST_TABLE + 30)
+    schedule = table(MAX_TABLE_WINDOWS + 30)
     found = claims(schedule)
-    end = f"[0, {8 * (LONGEST_TABLE - 1) + 4} s]"
+    end = f"[0, {8 * (MAX_TABLE_WINDOWS - 1) + 4} s]"
     for key in ("filter.floor", "torque.limit"):
         assert found[key].verdict is Verdict.PROVED
         assert end in found[key].statement
