@@ -209,7 +209,17 @@ def _check_names(law: Law) -> None:
         raise ValueError(f"law {law.name}: two of its states, signals and parameters are called {twice!r}")
 
 
-def _check_control(law: Law, control: Control, states: Mapping[str, Expression]) -> None:
+def _check_control(law: Law, control: Any, states: Mapping[str, Expression]) -> None:
+    if not isinstance(control, Control):
+        raise TypeError(
+            f"law {law.name}: control must return a Control(torque, ...), received {type(control).__name__}"
+        )
+    for what, value in (("torque", control.torque), *control.state_rates.items()):
+        if isinstance(value, (list, tuple, np.ndarray)):
+            kind = type(value).__name__
+            raise TypeError(
+                f"law {law.name}: {what} must be an expression, not {kind}: build it with casadi.vertcat"
+            )
     shape = ca.SX(control.torque).shape
     if shape != (3, 1):
         raise ValueError(f"law {law.name}: the torque must have shape (3,), received {shape}")

@@ -1,8 +1,16 @@
-"""Two-column CSV files: on/off times and thrust samples, exact, with the line of every row."""
+"""CSV files of windows and thrust samples: columns by name, units converted exactly, every row with its line.
+
+Python's own reader does the quoting; what a separator, a decimal comma, a header or a unit means is decided
+here, and what could mean two things is refused.
+"""
 
 from __future__ import annotations
 
+import csv
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from difflib import get_close_matches
 from fractions import Fraction
 from pathlib import Path
 from typing import final
@@ -10,6 +18,26 @@ from typing import final
 from .errors import ScenarioError, quote
 from .exact import exact_from_text
 from .files import read_text
+from .units import Heading, heading
+
+_DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
+_DATE = re.compile(r"\d{4}-\d{2}-\d{2}")
+_NUMBER_WORDS = frozenset({"nan", "inf", "infinity"})
+
+
+@final
+@dataclass(frozen=True)
+class Column:
+    """A column that is looked for.
+
+    Attributes
+    ----------
+    names : what a header may call it, lower case, words joined by "_"
+    units : factor of each unit that it may state; without one its numbers are taken as they are
+    """
+
+    names: tuple[str, ...]
+    units: Mapping[str, Fraction]
 
 
 @final
@@ -22,61 +50,162 @@ class Row:
     second: Fraction
 
 
-def read_rows(path: Path, key: str, columns: tuple[str, str]) -> list[Row]:
-    """Read a CSV of two numeric columns, with or without a header, `#` comments allowed.
+@final
+@dataclass(frozen=True)
+class Table:
+    """Rows of a file, and which of the forms asked for its header is (0 without a header)."""
+
+    rows: list[Row]
+    form: int
+
+
+@final
+@dataclass(frozen=True)
+class _Line:
+    number: int
+    cells: list[str]
+
+
+def read_rows(path: Path, key: str, forms: Sequence[tuple[Column, Column]]) -> Table:
+    """Read two columns of numbers from a CSV file.
 
     Parameters
     ----------
     path : Path
-        The CSV file.
+        The file: separated by commas, semicolons or tabs; `#` begins a comment; a decimal comma is read
+        where the separator is not a comma.
     key : str
         The scenario key that names it, for messages.
-    columns : tuple of two str
-        What a header must call the columns (its names may go on, e.g. "on_s" or "on [s]").
+    forms : sequence of pairs of `Column`
+        The pairs that a header may name, among other columns and in any order. A file without a header
+        has two columns, those of the first form, in base units.
 
     Raises
     ------
     ScenarioError
-        Naming the line: not two numbers, a wrong header; or the file: unreadable, empty, header only.
+        Naming the line: not numbers, a header without these columns, a unit that is not known; or the
+        file: unreadable, empty, header only.
     """
     where = f"{key}: {path.name}"
-    text = read_text(path, where)
-    rows: list[Row] = []
-    header = False
-    for number, line in enumerate(text.splitlines(), start=1):
-        content = line.split("#", 1)[0].strip()
-        if not content:
-            continue
-        cells = [cell.strip() for cell in content.split(",")]
-        at = f"{where} line {number}"
-        if not rows and not header and _is_header(cells):
-            _check_header(cells, columns, at)
-            header = True
-            continue
-        if len(cells) != 2:
-            raise ScenarioError(
-                at, f"expected two numbers, '{columns[0]},{columns[1]}', received {quote(content)}"
-            )
+    lines = _lines(read_text(path, where), where)
+    first = forms[0][0].names[0], forms[0][1].names[0]
+    if not lines:
+        raise ScenarioError(where, f"is empty: expected rows '{first[0]},{first[1]}'")
+    form, places, factors = 0, (0, 1), (Fraction(1), Fraction(1))
+    header = _is_header(lines[0].cells)
+    width = len(lines[0].cells) if header else 2
+    if header:
+        form, places, factors = _places(lines[0], forms, where)
+        lines = lines[1:]
+    if not lines:
+        raise ScenarioError(where, f"has a header and no rows: expected rows '{first[0]},{first[1]}'")
+    rows = [_row(line, places, factors, width, f"{where} line {line.number}", first) for line in lines]
+    return Table(rows, form)
+
+
+def _lines(text: str, where: str) -> list[_Line]:
+    """Cells of every line that is neither empty nor a comment."""
+    kept = [(n, line.split("#", 1)[0]) for n, line in enumerate(text.lstrip("\ufeff").splitlines(), start=1)]
+    kept = [(n, line) for n, line in kept if line.strip()]
+    if not kept:
+        return []
+    separator = next((s for s in (";", "\t") if s in kept[0][1]), ",")
+    lines = []
+    for number, line in kept:
         try:
-            rows.append(Row(number, exact_from_text(cells[0]), exact_from_text(cells[1])))
-        except ValueError as error:
-            raise ScenarioError(at, str(error)) from None
-    if not rows:
-        what = "has a header and no rows" if header else "is empty"
-        raise ScenarioError(where, f"{what}: expected rows '{columns[0]},{columns[1]}'")
-    return rows
+            (cells,) = csv.reader([line], delimiter=separator, skipinitialspace=True, strict=True)
+        except (csv.Error, ValueError) as error:
+            raise ScenarioError(f"{where} line {number}", f"cannot be split into cells: {error}") from None
+        cells = [cell.strip() for cell in cells]
+        if separator != ",":
+            cells = [c.replace(",", ".") if _DECIMAL_COMMA.fullmatch(c) else c for c in cells]
+        while len(cells) > 2 and not cells[-1]:  # a separator at the end of each line
+            cells.pop()
+        lines.append(_Line(number, cells))
+    return lines
 
 
 def _is_header(cells: list[str]) -> bool:
-    words = {"nan", "inf", "infinity"}
-    return all(c[:1].isalpha() and c.lower() not in words for c in cells if c) and any(cells)
-
-
-def _check_header(cells: list[str], columns: tuple[str, str], at: str) -> None:
-    named = len(cells) == 2 and all(
-        cell.lower().startswith(column) for cell, column in zip(cells, columns, strict=True)
+    """Whether a line names columns: some cell begins with a letter and none is a number."""
+    words = [cell for cell in cells if cell]
+    return any(c[0].isalpha() and c.lower() not in _NUMBER_WORDS for c in words) and not any(
+        _is_number(c) for c in words
     )
-    if not named:
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        exact_from_text(cell)
+    except ValueError:
+        return False
+    return True
+
+
+def _places(
+    line: _Line, forms: Sequence[tuple[Column, Column]], where: str
+) -> tuple[int, tuple[int, int], tuple[Fraction, Fraction]]:
+    """Return which form a header has, where its two columns stand, and their factors."""
+    at = f"{where} line {line.number}"
+    units = frozenset(unit for form in forms for column in form for unit in column.units)
+    headings = [heading(cell, units) for cell in line.cells]
+    complete = []
+    for number, form in enumerate(forms):
+        found = [[i for i, h in enumerate(headings) if h.name in column.names] for column in form]
+        for several in found:
+            if len(several) > 1:
+                names = " and ".join(quote(line.cells[i]) for i in several)
+                raise ScenarioError(at, f"can be read in more than one way ({names}): keep one")
+        if all(found):
+            complete.append((number, (found[0][0], found[1][0])))
+    if len(complete) > 1:
+        pairs = " and ".join(" with ".join(quote(line.cells[i]) for i in p) for _, p in complete)
+        raise ScenarioError(at, f"can be read in more than one way ({pairs}): keep two columns")
+    if not complete:
+        raise ScenarioError(at, _no_columns(line, headings, forms))
+    ((number, places),) = complete
+    factors = [_factor(headings[i], column, at) for i, column in zip(places, forms[number], strict=True)]
+    return number, places, (factors[0], factors[1])
+
+
+def _no_columns(line: _Line, headings: list[Heading], forms: Sequence[tuple[Column, Column]]) -> str:
+    expected = ", ".join(f"'{a.names[0]},{b.names[0]}'" for a, b in forms)
+    hint = ""
+    known = [name for form in forms for column in form for name in column.names]
+    for found in headings:
+        near = get_close_matches(found.name, known, n=1, cutoff=0.5)
+        if near and found.name not in known and len(found.name) > 1:
+            hint = f" (did you mean {quote(near[0])} for {quote(found.name)}?)"
+            break
+    if any("duration" in h.name and h.name not in known for h in headings):
+        hint = " (a duration needs the instant at which it begins: on,duration)"
+    return f"expected the header {expected}, received {quote(','.join(line.cells))}{hint}"
+
+
+def _factor(found: Heading, column: Column, at: str) -> Fraction:
+    if found.unit is None:
+        return Fraction(1)
+    if found.unit not in column.units:
+        known = ", ".join(dict.fromkeys(column.units))
+        raise ScenarioError(at, f"the unit {quote(found.unit)} of {quote(found.name)} is none of {known}")
+    return column.units[found.unit]
+
+
+def _row(
+    line: _Line,
+    places: tuple[int, int],
+    factors: tuple[Fraction, Fraction],
+    width: int,
+    at: str,
+    names: tuple[str, str],
+) -> Row:
+    if not max(places) < len(line.cells) <= width:  # more cells than the header has: a decimal comma, say
         raise ScenarioError(
-            at, f"expected the header '{columns[0]},{columns[1]}', received {quote(','.join(cells))}"
+            at, f"expected two numbers, '{names[0]},{names[1]}', received {quote(','.join(line.cells))}"
         )
+    try:
+        numbers = [exact_from_text(line.cells[i]) * factor for i, factor in zip(places, factors, strict=True)]
+    except ValueError as error:
+        date = any(_DATE.match(line.cells[i]) for i in places)
+        remedy = ": give times in seconds from the start of the run" if date else ""
+        raise ScenarioError(at, f"{error}{remedy}") from None
+    return Row(line.number, numbers[0], numbers[1])

@@ -25,6 +25,10 @@ class ScenarioError(ValueError):
         self.problem = one_line(problem)
         super().__init__(f"{self.where}: {self.problem}")
 
+    def __reduce__(self) -> tuple[type[ScenarioError], tuple[str, str]]:
+        """Let it come back whole from another process."""
+        return ScenarioError, (self.where, self.problem)
+
 
 def one_line(text: str) -> str:
     """Return the text with every control character and line break made visible."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+from contextlib import redirect_stdout
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -72,21 +74,22 @@ class LawChoice:
         """
         keywords = {("lambda_" if n == "lambda" else n): v for n, v in self.parameters}
         if self.type == USER:
-            from ..models.closed_loop import close_loop
-            from .user_law import load_law_class
+            from .user_code import complaint
+            from .user_law import load_law_class, require_sound_law
 
             assert self.file is not None
             assert self.class_name is not None
             law_class = load_law_class(self.file, self.class_name, self.where)
             try:
-                law = law_class(**keywords)
+                with redirect_stdout(sys.stderr):
+                    law = law_class(**keywords)
             except (TypeError, ValueError) as error:
                 raise ScenarioError(f"{self.where}.parameters", f"{self.class_name}: {error}") from None
-            try:
-                close_loop(law)
-            except Exception as error:  # whatever the user's own code does
-                said = next(iter(str(error).splitlines()), type(error).__name__)
-                raise ScenarioError(f"{self.where}.class", f"{self.class_name}: {said}") from error
+            except KeyboardInterrupt:
+                raise
+            except BaseException as error:  # whatever the user's own code does
+                raise complaint(error, self.file, f"{self.where}.class", self.class_name) from error
+            require_sound_law(law, self.file, f"{self.where}.class")
             return law
         from ..models.laws import LAWS
 

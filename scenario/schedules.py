@@ -9,13 +9,19 @@ from typing import final
 
 from ..models.schedule import Hermite, Ramps, Schedule, Shape, Window, build_schedule
 from . import thrust
-from .csv_tables import read_rows
+from .csv_tables import Column, read_rows
 from .document import Document
 from .errors import ScenarioError
 from .schema import ScheduleTable
+from .units import TIME
 
 MAX_COUNT = 200_000
 """Windows that `count` may ask for."""
+_OPENS = Column(("on", "start", "begin", "open", "opens", "t_on", "start_time", "window_start"), TIME)
+_CLOSES = Column(("off", "stop", "end", "close", "closes", "t_off", "stop_time", "end_time"), TIME)
+_LASTS = Column(("duration", "length", "width"), TIME)
+WINDOW_COLUMNS = ((_OPENS, _CLOSES), (_OPENS, _LASTS))
+"""What a CSV of windows may hold: when each opens, and when it closes or how long it lasts."""
 Locate = Callable[[int], str]
 """From the position of a window (from 0) to the words by which messages name it."""
 
@@ -112,9 +118,10 @@ def _windows(table: ScheduleTable, document: Document) -> tuple[list[Window], Lo
     if table.csv is not None:
         key = document.where("schedule.csv")
         path = document.origin("schedule").parent / table.csv
-        rows = read_rows(path, key, ("on", "off"))
+        table_read = read_rows(path, key, WINDOW_COLUMNS)
+        rows, by_length = table_read.rows, table_read.form == 1
         lines = [row.line for row in rows]
-        windows = [Window(row.first, row.second) for row in rows]
+        windows = [Window(row.first, row.second + (row.first if by_length else 0)) for row in rows]
         return windows, lambda i: f"{key}: {path.name} line {lines[i]}", f"{path.name}, {len(rows)} windows"
     key = document.where("schedule.on_time")
     if table.period is None:

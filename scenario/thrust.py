@@ -7,10 +7,16 @@ from pathlib import Path
 
 from ..models.schedule import Schedule
 from ..models.schedule.measured import measured_schedule, normalised
-from .csv_tables import read_rows
+from .csv_tables import Column, read_rows
 from .document import Document
 from .errors import ScenarioError
 from .schema import ScheduleTable, ThrustTable
+from .units import THRUST, TIME
+
+SAMPLE_COLUMNS = (
+    (Column(("time", "t", "timestamp"), TIME), Column(("thrust", "force", "f", "torque", "value"), THRUST)),
+)
+"""What a CSV of measured thrust holds."""
 
 
 def build(table: ScheduleTable, thrust: ThrustTable, document: Document) -> Schedule:
@@ -23,7 +29,7 @@ def build(table: ScheduleTable, thrust: ThrustTable, document: Document) -> Sche
     """
     key = document.where("schedule.thrust.csv")
     path = document.origin("schedule").parent / thrust.csv
-    rows = read_rows(path, key, ("time", "thrust"))
+    rows = read_rows(path, key, SAMPLE_COLUMNS).rows
     if rows[0].first < 0:
         at = f"{key}: {path.name} line {rows[0].line}"
         raise ScenarioError(at, f"time {float(rows[0].first):g} s: times start at 0 s")

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import importlib.util
 import sys
+from collections.abc import Iterable
 from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .errors import ScenarioError, quote
 from .files import read_text
+from .user_code import guard_class, user_code
 
 if TYPE_CHECKING:
     from ..models.laws import Law
@@ -36,13 +38,11 @@ def load_law_class(path: Path, name: str, where: str) -> type[Law]:
         module.__file__ = str(path)
         sys.modules[module_name] = module
         try:
-            exec(compile(source, str(path), "exec"), module.__dict__)  # noqa: S102  the user's own code, on request
-        except Exception as error:
+            with user_code(path, f"{where}.file", "cannot be run"):
+                exec(compile(source, str(path), "exec"), module.__dict__)  # noqa: S102  the user's own code, on request
+        except BaseException:
             del sys.modules[module_name]
-            line = _line_of(error, path)
-            raise ScenarioError(
-                f"{where}.file: {path.name}{line}", f"cannot be run: {type(error).__name__}: {error}"
-            ) from error
+            raise
     found = getattr(module, name, None)
     if not isinstance(found, type):
         raise ScenarioError(f"{where}.class", f"{path.name} has no class {quote(name)}")
@@ -51,16 +51,38 @@ def load_law_class(path: Path, name: str, where: str) -> type[Law]:
             f"{where}.class",
             f"{quote(name)} must be a subclass of intermit.models.laws.Law (a frozen dataclass)",
         )
+    guard_class(found, path, f"{where}.class")
     return found
 
 
-def _line_of(error: BaseException, path: Path) -> str:
-    if isinstance(error, SyntaxError):
-        return f" line {error.lineno}"
-    line = ""
-    traceback = error.__traceback__
-    while traceback is not None:
-        if traceback.tb_frame.f_code.co_filename == str(path):
-            line = f" line {traceback.tb_lineno}"
-        traceback = traceback.tb_next
-    return line
+def require_sound_law(law: Law, path: Path, where: str) -> None:
+    """Check what a law returns: its shapes, and that its torque is a number at the target attitude.
+
+    Raises
+    ------
+    ScenarioError
+        Naming file, class, what is wrong and the remedy.
+    """
+    import casadi as ca
+    import numpy as np
+
+    from ..models.closed_loop import close_loop
+
+    name = type(law).__name__
+    with user_code(path, where, name):
+        loop = close_loop(law)
+    values = [*[1.0, 0, 0, 0, 0, 0, 0], *(float(s.initial) for s in law.controller_states)]
+    body = [1.0, 0, 0, 1, 0, 1] * 2
+    at = (values, [1.0, 0.0] + [0.0] * (loop.time.numel() - 2), list(loop.parameter_values()), body)
+    torque = np.array(loop.function("torque", ca.SX(loop.control.torque))(*at)).ravel()
+    if not np.isfinite(torque).all():
+        raise ScenarioError(
+            f"{where}: {path.name}",
+            f"{name}: the torque is {_numbers(torque)} N m (0/0) at the target attitude, quaternion "
+            "(1, 0, 0, 0) at rest, where it must hold the body: add a small number to what is divided by, "
+            "or use casadi.if_else",
+        )
+
+
+def _numbers(values: Iterable[float]) -> str:
+    return "(" + ", ".join(f"{value:g}" for value in values) + ")"

@@ -214,13 +214,13 @@ BAD_CSV = {
     "empty": ("", ": is empty: expected rows 'on,off'"),
     "comments only": ("# nothing\n\n", ": is empty: expected rows 'on,off'"),
     "header only": ("on,off\n", ": has a header and no rows: expected rows 'on,off'"),
-    "columns swapped": ("off,on\n3,0\n", " line 1: expected the header 'on,off', received 'off,on'"),
+    "other columns": ("a,b\n3,0\n", " line 1: expected the header 'on,off', 'on,duration', received 'a,b'"),
     "not a number": ("0,3\n8,x\n", " line 2: expected a number, received 'x'"),
     "a hole": ("0,3\n8,\n", " line 2: expected a number, received ''"),
     "nan": ("0,3\nnan,9\n", " line 2: expected a finite number, received 'nan'"),
     "inf": ("0,inf\n", " line 1: expected a finite number, received 'inf'"),
     "three columns": ("0,3,4\n", " line 1: expected two numbers, 'on,off', received '0,3,4'"),
-    "semicolons": ("0;3\n", " line 1: expected two numbers, 'on,off', received '0;3'"),
+    "spaces": ("0 3\n", " line 1: expected two numbers, 'on,off', received '0 3'"),
     "huge": ("0,1e9999\n", " line 1: expected 0 or a number between 1e-30 and 1e30 with at most 60 digits, "
              "received 1e+9999"),
 }  # fmt: skip

@@ -1,0 +1,65 @@
+"""Units in the headers of CSV files: a column's name, and the exact factor to the unit used inside."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import final
+
+TIME = {
+    "s": Fraction(1), "sec": Fraction(1), "secs": Fraction(1), "second": Fraction(1), "seconds": Fraction(1),
+    "ms": Fraction(1, 1000), "msec": Fraction(1, 1000), "millisecond": Fraction(1, 1000),
+    "milliseconds": Fraction(1, 1000),
+    "us": Fraction(1, 10**6), "usec": Fraction(1, 10**6), "µs": Fraction(1, 10**6), "μs": Fraction(1, 10**6),
+    "microseconds": Fraction(1, 10**6), "ns": Fraction(1, 10**9),
+    "min": Fraction(60), "mins": Fraction(60), "minute": Fraction(60), "minutes": Fraction(60),
+    "h": Fraction(3600), "hr": Fraction(3600), "hrs": Fraction(3600), "hour": Fraction(3600),
+    "hours": Fraction(3600), "d": Fraction(86400), "day": Fraction(86400), "days": Fraction(86400),
+}  # fmt: skip
+"""Seconds in each unit of time."""
+
+THRUST = dict.fromkeys(
+    [
+        *(f"{p}{unit}" for p in ("", "k", "m", "u", "µ", "μ") for unit in ("N", "Nm", "N m", "N*m", "N.m")),
+        "%",
+        "-",
+    ],
+    Fraction(1),
+)
+"""Units that thrust may be given in: only its ratio to full thrust, in the same unit, counts."""
+
+_BRACKETED = re.compile(r"(?P<name>[^\[\](){}/]*?)\s*[\[({/]\s*(?P<unit>[^\[\](){}]*?)\s*[\])}]?")
+
+
+@final
+@dataclass(frozen=True)
+class Heading:
+    """A column's name without its unit, lower case, words joined by "_"; and the unit as written, or None."""
+
+    name: str
+    unit: str | None
+
+
+def heading(text: str, units: frozenset[str]) -> Heading:
+    """Split "on [ms]", "on (ms)", "on/ms", "on_ms", "on ms" into name and unit.
+
+    Parameters
+    ----------
+    text : the cell of the header
+    units : the units that may follow a name without brackets; in brackets any word is a unit
+    """
+    cell = text.strip()
+    found = _BRACKETED.fullmatch(cell)
+    if found and found["name"]:
+        return Heading(_plain(found["name"]), found["unit"])
+    words = re.split(r"[\s_\-]+", cell)
+    for count in (2, 1):
+        unit = " ".join(words[-count:])
+        if len(words) > count and unit in units:
+            return Heading(_plain(" ".join(words[:-count])), unit)
+    return Heading(_plain(cell), None)
+
+
+def _plain(name: str) -> str:
+    return re.sub(r"[\s_\-.]+", "_", name.strip().lower()).strip("_")
