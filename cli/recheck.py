@@ -38,7 +38,7 @@ def run(
     if scenario is None or not valid:
         return ExitCode.HOLDS if valid else ExitCode.REFUTED
     from ..scenario import load_scenario
-    from ..study.certify.run import differences
+    from ..study.certify.same_scenario import differences
 
     found = differences(text, load_scenario(scenario))
     for line in found:

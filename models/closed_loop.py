@@ -7,7 +7,7 @@ values of g stay symbols, so one loop serves every body and every parameter set.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, is_dataclass
 from fractions import Fraction
 from functools import lru_cache
 from typing import Any, Literal, final
@@ -112,6 +112,20 @@ class ClosedLoop:
             direction[i] = self.time[i + 1]
         return along_state + ca.jtimes(expression, self.time, direction)
 
+    def has_true_gain_rate(self) -> bool:
+        """Whether the stated rate of the gain is its rate along the loop, at two ordinary states."""
+        gain, stated = self.control.gain, self.control.gain_rate
+        if gain is None or stated is None:
+            return True
+        function = self.function("gain_rate", self.total_derivative(ca.SX(gain)), ca.SX(stated))
+        sizes = [argument.numel() for argument in self.arguments]
+        for start in (0.37, 0.71):
+            values = [np.array([0.3 + (start + 0.618 * i) % 1 for i in range(size)]) for size in sizes]
+            rate, said = (float(x) for x in function(*values))
+            if np.isfinite([rate, said]).all() and abs(rate - said) > 1e-9 * (1 + abs(rate) + abs(said)):
+                return False
+        return True
+
     def strays(self, *expressions: Expression) -> list[str]:
         """Names of the symbols in expressions that are none of the loop's own."""
         known = {s.element_hash() for s in ca.symvar(ca.veccat(*self.arguments))}
@@ -137,9 +151,10 @@ def body_values(body: RigidBody) -> Array:
     return np.array([J[i, j] for i, j in INERTIA_ENTRIES] + [inverse[i, j] for i, j in INERTIA_ENTRIES])
 
 
-@lru_cache(maxsize=64)
 def close_loop(law: Law, saturation: Saturation | None = None) -> ClosedLoop:
     """Build the closed loop of a law, symbolically.
+
+    Loops are remembered; a law that is changed, by class or by instance, gets its own.
 
     Raises
     ------
@@ -147,6 +162,24 @@ def close_loop(law: Law, saturation: Saturation | None = None) -> ClosedLoop:
         If the law returns a torque that is not (3,), not one rate for each controller state, uses a
         symbol that it was not given, or gives one name twice.
     """
+    return _close_loop(law, saturation, _identity(law))
+
+
+_PARTS = ("control", "parameters", "controller_states", "signals", "__getattribute__", "__getattr__")
+
+
+def _identity(law: Law) -> tuple[object, ...]:
+    """What tells laws apart that call themselves equal: class, methods, and attributes that are no fields."""
+    kind = type(law)
+    known = {f.name for f in fields(kind)} if is_dataclass(kind) else set[str]()
+    parts = tuple(getattr(kind, name, None) for name in _PARTS)
+    extra = [(name, id(value)) for name, value in vars(law).items() if name not in known]
+    return (kind, parts, id(law) if extra else 0, *extra)
+
+
+@lru_cache(maxsize=64)
+def _close_loop(law: Law, saturation: Saturation | None, identity: tuple[object, ...]) -> ClosedLoop:
+    del identity
     b0, bv, w = ca.SX.sym("b0"), ca.SX.sym("bv", 3), ca.SX.sym("w", 3)
     body = ca.SX.sym("body", 12)
     J, inverse = _symmetric(body[:6]), _symmetric(body[6:])

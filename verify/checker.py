@@ -19,7 +19,6 @@ for each kind of certificate, then the command line.
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 import re
@@ -39,6 +38,7 @@ VERSION = "1"
 
 Vector = list[Fraction]
 Matrix = list[list[Fraction]]
+HALF = Fraction(1, 2)
 
 
 class Invalid(Exception):  # noqa: N818 (it is the word printed)
@@ -600,7 +600,26 @@ INERTIA = ("J11", "J12", "J13", "J22", "J23", "J33")
 ATTITUDE = ("b1", "b2", "b3")
 RATE = ("y1", "y2", "y3")
 RESERVED = frozenset(
-    ("b0", "w1", "w2", "w3", "c", "s", "g", "g_rate", "k_target", "weight", *ATTITUDE, *RATE, *INERTIA)
+    (
+        "b0",
+        "w1",
+        "w2",
+        "w3",
+        "u1",
+        "u2",
+        "u3",
+        "V",
+        "W",
+        "c",
+        "s",
+        "g",
+        "g_rate",
+        "k_target",
+        "weight",
+        *ATTITUDE,
+        *RATE,
+        *INERTIA,
+    )
 )
 """Names that laws may not give to their states, signals and parameters."""
 Triple = list[Poly]
@@ -653,9 +672,7 @@ def read_loop(data: Node, storage: Node, *, symbolic: bool, J: Matrix | None) ->
     signals = tuple(node.text() for node in law["signals"].items())
     parameters = [node.text() for node in law["parameters"].items()]
     timed = [name for signal in signals for name in (signal, f"{signal}_rate")]
-    for name in (*states, *timed, *parameters):
-        taken = name in RESERVED or _TARGET.fullmatch(name)
-        require(not taken, f"the name {name!r} has a meaning of its own")
+    require_names([*states, *timed, *parameters])
     positive = ["k_target", *(["R"] if "R" in states else []), *(["weight", *parameters] if symbolic else [])]
     names = ["k_target", "s", *(["weight", *parameters] if symbolic else []), *states, "g", "g_rate", *timed]
     names += ["c", *ATTITUDE, *RATE, *(INERTIA if J is None else ())]
@@ -676,98 +693,84 @@ def read_loop(data: Node, storage: Node, *, symbolic: bool, J: Matrix | None) ->
     return Loop(ring, states, signals, table, symbols)
 
 
+def require_names(names: Sequence[str]) -> None:
+    """Refuse names with a meaning of their own, and what is no name and would read as words of a claim."""
+    for name in names:
+        require(name.isidentifier() and len(name) <= 60, f"{name[:60]!r} is no name for a symbol")
+        require(
+            name not in RESERVED and not _TARGET.fullmatch(name),
+            f"the name {name!r} has a meaning of its own",
+        )
+
+
 def _upper(J: Matrix | None, ring: Ring, symbols: dict[str, Poly]) -> list[Poly]:
     if J is None:
         return [symbols[name] for name in INERTIA]
     return [ring.constant(J[i][j]) for i in range(3) for j in range(i, 3)]
 
 
-def law_values(law: Node) -> tuple[Ring, dict[str, Poly]]:
-    """Carry out a law's program in symbols: plant, controller states, g, signals, parameters, inertia."""
-    states, signals, parameters = (
-        [node.text() for node in law[key].items()] for key in ("states", "signals", "parameters")
-    )
-    timed = [f"{name}{end}" for name in signals for end in ("", "_rate")]
-    names = ["b0", *ATTITUDE, "w1", "w2", "w3", *states, "g", "g_rate", *timed, *parameters, *INERTIA]
-    ring = Ring(names, [name for name in names if name == "R" or name in parameters])
-    return ring, run(law["program"], ring, {name: ring.symbol(name) for name in names})
-
-
 def law_polynomials(law: Node) -> dict[str, dict[Exponents, Fraction]]:
     """Return torque and controller rates of a law as polynomials, and its lists of names, for comparison."""
-    _, values = law_values(law)
-    states = [node.text() for node in law["states"].items()]
-    places = [*law["torque"].items(), *(law["rates"][name] for name in states)]
-    result = {str(i): pick(values, place).terms for i, place in enumerate(places)}
-    lists = ("parameters", "states", "signals")
-    return result | {f"{key} {node.text()}": {} for key in lists for node in law[key].items()}
+    result = {str(i): p.terms for i, p in enumerate(law_values(law))}
+    return result | {f"{key} {name}": {} for key, names in _law_names(law).items() for name in names}
 
 
-FAMILY = {"persistence-filter": ("R",), "adaptive-scaling": ("R", "k")}
-"""Laws whose equations the checker knows, with their controller states."""
-FAMILY_PARAMETERS = {
-    "persistence-filter": ("lambda", "R0"),
-    "adaptive-scaling": ("lambda", "gamma", "R0", "k0", "a"),
-}
+def _law_names(law: Node) -> dict[str, tuple[str, ...]]:
+    keys = ("parameters", "states", "signals")
+    return {key: tuple(node.text() for node in law[key].items()) for key in keys}
 
 
-def family_equations(kind: str, ring: Ring) -> list[Poly]:
-    """Return u and the controller rates of a law of the family Omega = w + 2 g^2 kappa bv.
+def law_values(law: Node) -> list[Poly]:
+    """Return torque and controller rates of a law as polynomials in the symbols that laws may use."""
+    lists = _law_names(law)
+    timed = [f"{name}{end}" for name in lists["signals"] for end in ("", "_rate")]
+    require_names([*lists["states"], *timed, *lists["parameters"]])
+    names = ["b0", *ATTITUDE, "w1", "w2", "w3", *lists["states"], "g", "g_rate", *timed]
+    names += [*lists["parameters"], *INERTIA]
+    ring = Ring(names, [name for name in names if name == "R" or name in lists["parameters"]])
+    values = run(law["program"], ring, {name: ring.symbol(name) for name in names})
+    places = [*law["torque"].items(), *(law["rates"][name] for name in lists["states"])]
+    return [pick(values, place) for place in places]
 
-    u = -2 g kappa bv x J w - 4 g' kappa J bv - 2 g kappa' J bv - g kappa J (b0 w + bv x w)
-        - (g/2) kappa (1 + b0) J Omega,  R' = -lambda R + g^2 (1 + b0);
-    persistence filter: kappa = 1/R; adaptive scaling: kappa = k,
-    k' = gamma R g^2 [(1 + b0) Omega'J Omega + 2 a |bv|^2].
+
+@dataclass(frozen=True)
+class Motion:
+    """The closed loop in the coordinates (c, b, y): w, the rates of everything but y, and J y'."""
+
+    rate: Triple
+    torque: Triple
+    rates: dict[str, Poly]
+    momentum: Triple
+
+
+def move(loop: Loop, law: Node, shift: Triple) -> Motion:
+    """Derive the motion for y = w + shift from the law and the equations of the rigid body.
+
+    b0' = -bv.w/2, bv' = (b0 w + bv x w)/2, J w' = -w x J w + g u: these three lines are the
+    checker's own.
     """
-    at = ring.symbol
-    b0, g, R = at("b0"), at("g"), at("R")
-    b, w = [at(name) for name in ATTITUDE], [at(f"w{i}") for i in (1, 2, 3)]
-    J = [[at(f"J{min(i, j)}{max(i, j)}") for j in (1, 2, 3)] for i in (1, 2, 3)]
-    above = b0 + ring.constant(1)
-    R_rate = g * g * above - at("lambda") * R
-    rates = [R_rate]
-    if kind == "persistence-filter":
-        kappa = R.inverse()
-        kappa_rate = -(R_rate * kappa * kappa)
-    else:
-        kappa = at("k")
-    Omega = [w[i] + (g * g * kappa * b[i]).scaled(2) for i in range(3)]
-    J_Omega = apply(J, Omega, ring)
-    if kind == "adaptive-scaling":
-        energy = total([Omega[i] * J_Omega[i] for i in range(3)], ring)
-        attitude = (at("a") * total([x * x for x in b], ring)).scaled(2)
-        kappa_rate = at("gamma") * R * g * g * (above * energy + attitude)
-        rates.append(kappa_rate)
-    gyro, turn = cross(b, apply(J, w, ring)), cross(b, w)
-    J_b, J_turn = apply(J, b, ring), apply(J, [b0 * w[i] + turn[i] for i in range(3)], ring)
-    slope = (at("g_rate") * kappa).scaled(4) + (g * kappa_rate).scaled(2)
-    pull = (g * kappa * above).scaled(Fraction(1, 2))
-    lead = g * kappa
-    torque = [
-        -(lead * gyro[i]).scaled(2) - slope * J_b[i] - lead * J_turn[i] - pull * J_Omega[i] for i in range(3)
-    ]
-    return [*torque, *rates]
+    ring, symbols = loop.ring, loop.symbols
+    w = [ring.symbol(name) - shift[i] for i, name in enumerate(RATE)]
+    known = {name: value for name, value in symbols.items() if name not in ("k_target", "weight")}
+    control = run(law["program"], ring, known | {f"w{i + 1}": w[i] for i in range(3)})
+    torque = [pick(control, place) for place in law["torque"].items()]
+    require(len(torque) == 3, "the torque must have three components")
+    b, b0 = [ring.symbol(name) for name in ATTITUDE], symbols["b0"]
+    turn = cross(b, w)
+    rates = {"c": total([b[i] * w[i] for i in range(3)], ring).scaled(Fraction(1, 2))}
+    rates |= {ATTITUDE[i]: (b0 * w[i] + turn[i]).scaled(Fraction(1, 2)) for i in range(3)}
+    rates |= {name: pick(control, law["rates"][name]) for name in loop.states}
+    rates |= {name: symbols[f"{name}_rate"] for name in ("g", *loop.signals)}
+    gyro = cross(w, apply(loop.J, w, ring))
+    momentum = [symbols["g"] * torque[i] - gyro[i] for i in range(3)]
+    shift_rate = apply(loop.J, [along(p, rates) for p in shift], ring)
+    momentum = [on_sphere(momentum[i] + shift_rate[i]) for i in range(3)]
+    return Motion(w, torque, rates, momentum)
 
 
-def family_of(law: Node) -> str | None:
-    """Name the law of the family whose equations a program states, as polynomials; None if it is neither.
-
-    The label that the file gives to a law is no evidence and is not looked at. On |b| = 1 more programs
-    may mean the same law: they are not recognised.
-    """
-    law["name"].text()
-    lists = {
-        key: tuple(node.text() for node in law[key].items()) for key in ("states", "signals", "parameters")
-    }
-    kind = next((name for name, states in FAMILY.items() if set(states) == set(lists["states"])), None)
-    if kind is None or lists["signals"] or not set(FAMILY_PARAMETERS[kind]) <= set(lists["parameters"]):
-        return None
-    ring, values = law_values(law)
-    places = [*law["torque"].items(), *(law["rates"][name] for name in FAMILY[kind])]
-    stated = [pick(values, place) for place in places]
-    known = family_equations(kind, ring)
-    same = len(stated) == len(known) and all(not (p - q).terms for p, q in zip(stated, known, strict=True))
-    return kind if same else None
+def along(p: Poly, rates: dict[str, Poly]) -> Poly:
+    """Return the derivative of a polynomial that is free of y."""
+    return total([p.derivative(name) * rate for name, rate in rates.items() if p.uses(name)], p.ring)
 
 
 @dataclass(frozen=True)
@@ -781,40 +784,21 @@ class Derivative:
 
 
 def differentiate(loop: Loop, law: Node, storage: Node) -> Derivative:
-    """Derive V' from the law, the storage function and the equations of the rigid body.
-
-    b0' = -bv.w/2, bv' = (b0 w + bv x w)/2, J w' = -w x J w + g u: these three lines are the
-    checker's own.
-    """
+    """Derive V' from the law, the storage function and the equations of the rigid body."""
     ring, symbols = loop.ring, loop.symbols
     free = run(storage["shift_program"], ring, symbols)
     shift = [pick(free, place) for place in storage["shift"].items()]
     plain = len(shift) == 3 and not any(_uses_a_rate(loop, p) for p in shift)
     require(plain, "the shift must be three functions of the state, g and the signals")
-    w = [ring.symbol(name) - shift[i] for i, name in enumerate(RATE)]
-    known = {**symbols, **{f"w{i + 1}": w[i] for i in range(3)}}
-    control = run(law["program"], ring, known)
-    torque = [pick(control, place) for place in law["torque"].items()]
-    require(len(torque) == 3, "the torque must have three components")
-    b, b0 = [ring.symbol(name) for name in ATTITUDE], symbols["b0"]
-    turn = cross(b, w)
-    rates = {"c": total([b[i] * w[i] for i in range(3)], ring).scaled(Fraction(1, 2))}
-    rates |= {ATTITUDE[i]: (b0 * w[i] + turn[i]).scaled(Fraction(1, 2)) for i in range(3)}
-    rates |= {name: pick(control, law["rates"][name]) for name in loop.states}
-    rates |= {name: symbols[f"{name}_rate"] for name in ("g", *loop.signals)}
-
-    def along(p: Poly) -> Poly:
-        return total([p.derivative(name) * rate for name, rate in rates.items() if p.uses(name)], ring)
-
-    gyro = cross(w, apply(loop.J, w, ring))
-    momentum = [symbols["g"] * torque[i] - gyro[i] for i in range(3)]
-    shift_rate = apply(loop.J, [along(p) for p in shift], ring)
-    momentum = [on_sphere(momentum[i] + shift_rate[i]) for i in range(3)]
+    true_name(loop, law)
+    motion = move(loop, law, shift)
+    known = {**symbols, **{f"w{i + 1}": motion.rate[i] for i in range(3)}}
     outputs = run(storage["program"], ring, known)
     value = on_sphere(pick(outputs, storage["value"]))
     require(not _uses_a_rate(loop, value), "the storage function must not use g' or the rate of a signal")
     gradient = _momentum_gradient(loop, storage, outputs, [value.derivative(name) for name in RATE])
-    rate = along(value) + total([gradient[i] * momentum[i] for i in range(3)], ring)
+    turning = total([gradient[i] * motion.momentum[i] for i in range(3)], ring)
+    rate = along(value, motion.rates) + turning
     return Derivative(value, on_sphere(rate), outputs, shift)
 
 
@@ -855,26 +839,192 @@ def inverse_matrix(A: Matrix) -> Matrix:
     return [[cofactor[j][i] / determinant for j in range(3)] for i in range(3)]
 
 
-def describe_law(data: Node, *, symbolic: bool) -> str:
-    """Return the law for people: the name of the equations it was found to have, else its program's hash."""
+# --- laws by their equations -------------------------------------------------------------------
+#
+# A name in the file proves nothing. Names of the laws below may stand there only beside a program that
+# has their equations. What is printed is the name of the known law that a program is, else its equations.
+
+
+def augmented(loop: Loop, kappa: Poly) -> Triple:
+    """2 g^2 kappa bv, the shift from w to Omega."""
+    g = loop.ring.symbol("g")
+    return [(g * g * kappa * loop.ring.symbol(name)).scaled(2) for name in ATTITUDE]
+
+
+def gain_of(loop: Loop) -> Poly:
+    """Kappa of the family: the state k where there is one, else 1/R."""
+    known = ("R",), ("R", "k"), ("k", "R")
+    require(loop.states in known, "its controller states are not R, or R and k")
+    return loop.ring.symbol("k") if "k" in loop.states else loop.ring.symbol("R").inverse()
+
+
+def excess(loop: Loop, motion: Motion, kappa: Poly) -> Triple:
+    """J Omega' + Omega x J w + (g^2/2) kappa (1 + b0) J Omega: zero for the laws of the family."""
+    ring, y = loop.ring, [loop.ring.symbol(name) for name in RATE]
+    g, room = ring.symbol("g"), ring.constant(2) - ring.symbol("c")
+    gyro, Jy = cross(y, apply(loop.J, motion.rate, ring)), apply(loop.J, y, ring)
+    pull = (g * g * kappa * room).scaled(HALF)
+    return [on_sphere(motion.momentum[i] + gyro[i] + pull * Jy[i]) for i in range(3)]
+
+
+def filter_slope(loop: Loop, lam: Poly) -> Poly:
+    """-lambda R + g^2 (1 + b0)."""
+    ring, g = loop.ring, loop.ring.symbol("g")
+    return g * g * (ring.constant(2) - ring.symbol("c")) - lam * ring.symbol("R")
+
+
+def gain_slope(loop: Loop, gamma: Poly, a: Poly) -> Poly:
+    """Return gamma R g^2 [(1 + b0) Omega'J Omega + 2 a |bv|^2]."""
+    ring = loop.ring
+    y, b = [ring.symbol(name) for name in RATE], [ring.symbol(name) for name in ATTITUDE]
+    Jy, g = apply(loop.J, y, ring), ring.symbol("g")
+    energy = total([y[i] * Jy[i] for i in range(3)], ring) * (ring.constant(2) - ring.symbol("c"))
+    square = total([x * x for x in b], ring) * a.scaled(2)
+    return gamma * ring.symbol("R") * g * g * (energy + square)
+
+
+def true_name(loop: Loop, law: Node) -> str:
+    """Return the name of the known law whose equations a program has; empty if it is none of them.
+
+    The name of a known law beside other equations is refused; any other counts for nothing.
+    """
+    label = law["name"].text() if law.has("name") else ""
+    if label in NAMED:
+        same = not loop.signals and NAMED[label](loop, law)
+        require(same, f"the program of the file is not the law {label}")
+        return label
+    return "" if loop.signals else next((name for name, same in NAMED.items() if same(loop, law)), "")
+
+
+def _is_persistence_filter(loop: Loop, law: Node) -> bool:
+    return loop.states == ("R",) and _is_scaled(loop, law, printed=False)
+
+
+def _is_printed_filter(loop: Loop, law: Node) -> bool:
+    return loop.states == ("R",) and _is_scaled(loop, law, printed=True)
+
+
+def _is_adaptive_scaling(loop: Loop, law: Node) -> bool:
+    known = all(name in loop.symbols for name in ("gamma", "a"))
+    if not known or sorted(loop.states) != ["R", "k"] or not _is_scaled(loop, law, printed=False):
+        return False
+    motion = move(loop, law, augmented(loop, gain_of(loop)))
+    slope = gain_slope(loop, loop.symbols["gamma"], loop.symbols["a"])
+    return not on_sphere(motion.rates["k"] - slope).terms
+
+
+def _is_scaled(loop: Loop, law: Node, *, printed: bool) -> bool:
+    """Whether R is the filter and Omega moves as in the family; `printed`: no J in the term of kappa'."""
+    if "lambda" not in loop.symbols:
+        return False
+    kappa, ring = gain_of(loop), loop.ring
+    motion = move(loop, law, augmented(loop, kappa))
+    rest = excess(loop, motion, kappa)
+    if printed:
+        g, b = ring.symbol("g"), [ring.symbol(name) for name in ATTITUDE]
+        slope, Jb = along(kappa, motion.rates), apply(loop.J, b, ring)
+        missing = [(g * g * slope * (Jb[i] - b[i])).scaled(2) for i in range(3)]
+        rest = [on_sphere(rest[i] - missing[i]) for i in range(3)]
+    slope = filter_slope(loop, loop.symbols["lambda"])
+    return not any(p.terms for p in (*rest, on_sphere(motion.rates["R"] - slope)))
+
+
+def _is_quaternion_pd(loop: Loop, law: Node) -> bool:
+    gains = [loop.symbols.get(name) for name in ("proportional", "derivative")]
+    if loop.states or gains[0] is None or gains[1] is None:
+        return False
+    motion = move(loop, law, [loop.ring.constant(0)] * 3)
+    pairs = zip(ATTITUDE, motion.rate, motion.torque, strict=True)
+    return not any(on_sphere(u + gains[0] * loop.ring.symbol(b) + gains[1] * w).terms for b, w, u in pairs)
+
+
+def _is_free_motion(loop: Loop, law: Node) -> bool:
+    return not loop.states and not any(p.terms for p in move(loop, law, [loop.ring.constant(0)] * 3).torque)
+
+
+def _is_not_algebraic(loop: Loop, law: Node) -> bool:
+    del loop, law
+    return False
+
+
+NAMED: dict[str, Callable[[Loop, Node], bool]] = {
+    "persistence-filter": _is_persistence_filter,
+    "persistence-filter-as-printed": _is_printed_filter,
+    "adaptive-scaling": _is_adaptive_scaling,
+    "adaptive-scaling-as-printed": _is_not_algebraic,
+    "quaternion-pd": _is_quaternion_pd,
+    "free-motion": _is_free_motion,
+}
+"""Laws that may be called by name, with the test of a program."""
+
+
+@dataclass(frozen=True)
+class Compared:
+    """A law that the comparison theorem of the floor is about, read off its equations.
+
+    `gain` is a key of `LOOPS`; lam, gamma and a are numbers in the equations, whatever the file calls them.
+    """
+
+    gain: str
+    lam: Fraction
+    gamma: Fraction
+    a: Fraction
+
+
+def compared_law(data: Node) -> Compared:
+    """Return which law of the family the program of the data is, proved for every inertia."""
     law = data["law"]
+    loop = read_loop(data, Node({}, "storage"), symbolic=False, J=None)
+    kappa, ring = gain_of(loop), loop.ring
+    adaptive = "k" in loop.states
+    true_name(loop, law)
+    motion = move(loop, law, augmented(loop, kappa))
+    words = "k" if adaptive else "1/R"
+    for p in excess(loop, motion, kappa):
+        require(
+            not p.terms,
+            f"its torque does not give J Omega' = -Omega x J w - (g^2/2) kappa (1 + b0) J Omega for "
+            f"Omega = w + 2 g^2 kappa bv, kappa = {words}",
+        )
+    zero, one = ring.constant(0), ring.constant(1)
+    rest = on_sphere(motion.rates["R"] - filter_slope(loop, zero))
+    lam = -rest.terms.get(next(iter(ring.symbol("R").terms)), Fraction(0))
+    same = not (rest + ring.symbol("R").scaled(lam)).terms
+    require(same and lam > 0, "its state R does not obey R' = -lambda R + g^2 (1 + b0) with lambda > 0")
+    if not adaptive:
+        return Compared("persistence-filter", lam, Fraction(0), Fraction(0))
+    slope = on_sphere(motion.rates["k"])
+    unit, other = on_sphere(gain_slope(loop, one, zero)), on_sphere(gain_slope(loop, one, one))
+    first = next(iter(unit.terms))
+    gamma = slope.terms.get(first, Fraction(0)) / unit.terms[first]
+    second = next(iter((other - unit).terms))
+    a = slope.terms.get(second, Fraction(0)) / (other - unit).terms[second] / (gamma or 1)
+    same = not (slope - unit.scaled(gamma) - (other - unit).scaled(gamma * a)).terms
+    require(
+        same and gamma > 0 and a > 0,
+        "its state k does not obey k' = gamma R g^2 [(1 + b0) Omega'J Omega + 2 a |bv|^2] with gamma, a > 0",
+    )
+    return Compared("adaptive-scaling", lam, gamma, a)
+
+
+def describe_law(data: Node, *, symbolic: bool) -> str:
+    """Return the law for people: by the known law that it is, else by its equations; and its numbers."""
+    law = data["law"]
+    loop = read_loop(data, Node({}, "storage"), symbolic=symbolic, J=None)
+    name = true_name(loop, law)
+    words = f"law {name}" if name else f"law {law_equations(law)}"
     names = [node.text() for node in law["parameters"].items()]
-    kind = family_of(law)
-    require_label(law["name"].text(), kind)
-    title = f"law {kind}" if kind is not None else f"the law of this file's program (sha256 {law_hash(law)})"
     if symbolic:
-        return f"{title}, every {', '.join(names)} > 0" if names else title
-    values = [f"{name} = {show(data['parameters'][name].number())}" for name in names]
-    return ", ".join([title, *values])
+        return ", ".join([words, f"every {', '.join(names)} > 0"] if names else [words])
+    return ", ".join([words, *(f"{n} = {show(data['parameters'][n].number())}" for n in names)])
 
 
-def law_hash(law: Node) -> str:
-    """Return the start of the SHA-256 of what a law computes: its lists of names, program and results."""
-    lists = [[node.text() for node in law[key].items()] for key in ("parameters", "states", "signals")]
-    places = [node.text() for node in law["torque"].items()]
-    places += [law["rates"][name].text() for name in lists[1]]
-    program = [node.text() for node in law["program"].items()]
-    return hashlib.sha256(json.dumps([*lists, program, places]).encode()).hexdigest()[:16]
+def law_equations(law: Node) -> str:
+    """Return torque and rates of the states, in the symbols of the file."""
+    values = dict(zip(("u1", "u2", "u3"), law_values(law)[:3], strict=True))
+    states = [node.text() for node in law["states"].items()]
+    values |= {f"{name}'": p for name, p in zip(states, law_values(law)[3:], strict=True)}
+    return ", ".join(f"{name} = {p.text(MAX_TERMS)}" for name, p in values.items())
 
 
 # --- kind: identity of the derivative ----------------------------------------------------------
@@ -1090,7 +1240,8 @@ def check_lyapunov_counterexample(data: Node, certificate: Node) -> list[str]:
     rate = result.rate.at(values)
     require(rate > 0, f"V' = {show(rate)} at the state is not positive")
     attitude, body_rate = show_matrix([quaternion]), show_matrix([w])
-    others = [f"{name} = {show(values[name])}" for name in (*loop.states, "g", "g_rate", "k_target")]
+    shown = (*loop.states, *(f"{name}{end}" for name in timed for end in ("", "_rate")), "k_target")
+    others = [f"{name} = {show(values[name])}" for name in shown]
     return [
         f"V' = {show(rate)} > 0 at quaternion {attitude}, rate {body_rate} rad/s,",
         ", ".join(others) + ",",
@@ -1360,13 +1511,6 @@ def read_windows(data: Node, profile: Profile) -> list[Span]:
     return windows
 
 
-def is_open(windows: list[Span], profile: Profile, t: Fraction) -> bool:
-    """Whether a window is open at t in [0, period], edges included, those of neighbouring periods too."""
-    period = profile.period
-    instants = (t,) if period is None else (t - period, t, t + period)
-    return any(on <= instant <= off for on, off in windows for instant in instants)
-
-
 def following(windows: list[Span], profile: Profile) -> list[Fraction]:
     """Gap after each window; the last one's up to the first window of the next period, if there is one."""
     gaps = [after[0] - before[1] for before, after in pairwise(windows)]
@@ -1484,7 +1628,9 @@ def check_schedule_counterexample(data: Node, certificate: Node) -> list[str]:
     require(g != 0, "g is zero there")
     where = describe_windows(windows, profile)
     if fact == "support":
-        require(not is_open(windows, profile, t), "a window is open there")
+        shifts = (0,) if profile.period is None else (-profile.period, 0, profile.period)
+        closed = not any(on <= t + shift <= off for on, off in windows for shift in shifts)
+        require(closed, "a window is open there")
         where = f"outside {where}"
     else:
         require(fact == "uncertain-thrust", f"there is no fact {fact!r}")
@@ -1607,7 +1753,7 @@ def _within(p: Vector, low: Fraction, high: Fraction, depth: int) -> bool:
 # A(S) = 1 - S/4 - S^2/32 >= sqrt(1 - S/2), c >= 1/sqrt(8 Jmin). A bound whose slope is on its safe
 # side wherever the component touches it, the others within their bounds, is never crossed.
 
-LOOPS = {
+LOOPS = {  # these two laws are known by their equations: see `compared_law`
     "persistence-filter": "kappa = 1/R",
     "adaptive-scaling": "kappa = k, k' = gamma R g^2 [(1 + b0) Omega'J Omega + 2 a |bv|^2]",
 }
@@ -1710,7 +1856,6 @@ def check_step(d: FloorData, step: FloorStep, *, tail: bool) -> None:
 
 Conditions = Iterator[tuple[str, Form]]
 ONE, TWO = Form.constant(1), Form.constant(2)
-HALF = Fraction(1, 2)
 NO_BOUND = Fraction(3, 2)
 
 
@@ -1814,38 +1959,16 @@ def adaptive_tail_conditions(d: FloorData, G: Form, x: dict[str, Form], dx: dict
     yield "slope of L", dx["L"] - (G * U * (Y * Y + T.times(2 * d.a))).times(2 * d.gamma)
 
 
-def read_family(law: Node) -> str:
-    """Return which of the two laws the claim is about: as its program states, or by name alone.
-
-    A file that gives no program speaks of the checker's own equations of that name, and its claim states
-    them; one that gives a program must state the same equations, whatever it calls them.
-    """
-    label = law["name"].text()
-    if law.keys() == ["name"]:
-        require(label in LOOPS, f"no comparison system is known for the law {label!r}")
-        return label
-    kind = family_of(law)
-    require(
-        kind is not None, f"the program of the law {label!r} is none that a comparison system is known for"
-    )
-    assert kind is not None
-    require_label(label, kind)
-    return kind
-
-
-def require_label(label: str, kind: str | None) -> None:
-    """Check that a law whose program was recognised bears its name, and that no other law does."""
-    require(kind is None or label == kind, f"the law is called {label!r}, but its program is {kind}")
-    require(kind is not None or label not in LOOPS, f"the law is called {label!r}, which its program is not")
-
-
 def read_floor_data(data: Node, witness: Node) -> FloorData:
     """Read the loop's data; check c >= 1/sqrt(8 Jmin) and greatest >= Jmax for every inertia."""
-    law = read_family(data["law"])
-    names = ["lambda", "R0"] + (["gamma", "k0", "a"] if law == "adaptive-scaling" else [])
-    values = {name: data["parameters"][name].number() for name in names}
-    require(all(v > 0 for n, v in values.items() if n != "k0"), "parameters must be positive")
-    require(values.get("k0", Fraction(0)) >= 0, "k0 must not be negative")
+    law = read_compared(data)
+    names = {"R": "R0", "k": "k0"} if law.gain == "adaptive-scaling" else {"R": "R0"}
+    if data.has("initial"):
+        require(set(data["initial"].keys()) == set(names), "expected the initial value of every state")
+        start = {name: data["initial"][name].number() for name in names}
+    else:  # files of earlier versions give them among the parameters
+        start = {name: data["parameters"][old].number() for name, old in names.items()}
+    require(start["R"] > 0 and start.get("k", Fraction(0)) >= 0, "expected R(0) > 0 and k(0) >= 0")
     c, greatest = witness["coupling"].number(), witness["greatest_inertia"].number()
     require(c > 0, "the coupling must be positive")
     for J in inertia_vertices(data):  # convex in J: the vertices suffice
@@ -1853,11 +1976,26 @@ def read_floor_data(data: Node, witness: Node) -> FloorData:
         require(is_positive_semidefinite(gap), "the coupling is below 1/sqrt(8 Jmin)")
         gap = [[(greatest if i == j else 0) - J[i][j] for j in range(3)] for i in range(3)]
         require(is_positive_semidefinite(gap), "the greatest inertia is too small")
-    zero = Fraction(0)
-    gamma, k0, a = (values.get(n, zero) for n in ("gamma", "k0", "a"))
     profile = read_profile(data)
     require_continuous(profile)
-    return FloorData(law, values["lambda"], values["R0"], gamma, k0, a, c, greatest, profile)
+    k0 = start.get("k", Fraction(0))
+    return FloorData(law.gain, law.lam, start["R"], law.gamma, k0, law.a, c, greatest, profile)
+
+
+def read_compared(data: Node) -> Compared:
+    """Return the law of the data: its program, or in files of earlier versions the equations by a name.
+
+    Such a file holds no program: its claim is about the equations that are printed with it.
+    """
+    if data["law"].has("program"):
+        return compared_law(data)
+    law = data["law"]["name"].text()
+    require(law in LOOPS, f"no comparison system is known for the law {law!r}")
+    names = ("lambda", "gamma", "a") if law == "adaptive-scaling" else ("lambda",)
+    values = {name: data["parameters"][name].number() for name in names}
+    require(all(v > 0 for v in values.values()), "parameters must be positive")
+    zero = Fraction(0)
+    return Compared(law, values["lambda"], values.get("gamma", zero), values.get("a", zero))
 
 
 def require_continuous(profile: Profile) -> None:
@@ -2009,7 +2147,7 @@ def check_filter_floor(data: Node, certificate: Node) -> list[str]:
         f"from every start with {words}, R(0) = {show(d.R0)} s{start},",
         f"R' = -lambda R + g^2 (1 + b0), lambda = {show(d.lam)} 1/s,",
         f"law {d.law}: Omega = w + 2 g^2 kappa bv, {LOOPS[d.law]}{gains},",
-        "u such that J Omega' = -Omega x J w - (g^2/2) kappa (1 + b0) J Omega,",
+        "whose torque gives J Omega' = -Omega x J w - (g^2/2) kappa (1 + b0) J Omega,",
         f"{describe_profile(d.profile)},",
         describe_inertia(data),
     ]

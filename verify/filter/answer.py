@@ -16,7 +16,7 @@ from .claims import FloorFacts, convergence_claim, floor_claim, reaches_far_enou
 from .converged import ConvergedFilter, ConvergedFloor
 from .convergence import Convergence, analyse_convergence
 from .question import FloorQuestion
-from .recognise import follows_filter, recognise
+from .recognise import NoComparisonError, compared_law, follows_filter
 from .refine import tighten_settling_time
 from .torque_bound import TorqueBound, torque_bound
 from .worst_found import WorstFound, find_worst
@@ -91,10 +91,11 @@ def answer(question: FloorQuestion) -> FloorAnswer:
 
 def _no_system(law: Law) -> str:
     """Why a law has no comparison system."""
-    found = recognise(law)
-    return (
-        found.reason or f"law {law.name}: the comparison system needs lambda, R(0), a > 0, gamma, k(0) >= 0"
-    )
+    try:
+        compared_law(law)
+    except NoComparisonError as error:
+        return str(error)
+    return ""
 
 
 def _search_horizon(schedule: Schedule) -> Fraction:

@@ -7,12 +7,13 @@ from fractions import Fraction
 from math import frexp
 from typing import TYPE_CHECKING, Any
 
+from ...models.closed_loop import close_loop
 from ..certificates.format import Certificate
 from ..certificates.schedule import schedule_data
 from ..flow.stepping import Step
+from ..lyapunov.forms import law_form
 from .certify import FilterLowerBound
 from .flowpipe import Flowpipe
-from .recognise import recognise
 
 if TYPE_CHECKING:
     from .convergence import Convergence
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
 KIND = "filter-floor"
 MANTISSA = 53
 """Bits of a float's mantissa."""
-LAW_PARAMETERS = ("lambda", "gamma", "R0", "k0", "a")
 
 
 def floor_certificate(
@@ -57,24 +57,36 @@ def floor_certificate(
 
 
 def question_data(question: FloorQuestion) -> dict[str, Any]:
-    """What a floor's claims speak about: body, law, schedule and initial set.
+    """What a floor's claims speak about: body, the law's equations and start, schedule and initial set.
 
-    The law is written out as its program; a law without a comparison system has its name only.
+    Raises
+    ------
+    NotAlgebraicError
+        If the law uses more than + - * /.
     """
     q = question
     data: dict[str, Any] = {
         "inertia": q.body.exact_inertia,
-        "law": recognise(q.law).form or {"name": q.law.name},
-        "parameters": {n: v for n, v in q.law.parameters.items() if n in LAW_PARAMETERS},
+        "law": law_form(close_loop(q.law)),
+        "parameters": q.law.parameters,
+        "initial": {state.name: state.initial for state in q.law.controller_states},
         "schedule": schedule_data(q.schedule),
-        "initial_set": {"max_angle_deg": q.max_angle_deg},
+        "initial_set": set_data(q),
     }
     if q.inertia_tolerance is not None:
         data["inertia_tolerance"] = q.inertia_tolerance
-    for name, value in (("max_rate", q.max_rate), ("max_weighted_rate", q.max_weighted_rate)):
-        if value is not None:
-            data["initial_set"][name] = value
     return data
+
+
+def set_data(question: FloorQuestion) -> dict[str, Any]:
+    """Write down the initial set; a bound that it does not have is left out."""
+    q = question
+    bounds = {
+        "max_angle_deg": q.max_angle_deg,
+        "max_rate": q.max_rate,
+        "max_weighted_rate": q.max_weighted_rate,
+    }
+    return {name: value for name, value in bounds.items() if value is not None}
 
 
 def _flowpipes(floor: FilterLowerBound) -> dict[str, Any]:

@@ -21,7 +21,7 @@ from .adaptive import AdaptiveSystem
 from .comparison import BodyBounds
 from .flowpipe import Flowpipe, LawComparison
 from .persistence import PersistenceSystem
-from .recognise import recognise
+from .recognise import NoComparisonError, compared_law
 from .sets import InitialSet
 from .tail import MAX_RATIO, Tail, find_tail
 
@@ -110,28 +110,27 @@ class FilterLowerBound:
 
 
 def comparison_system(law: Law, bounds: BodyBounds) -> LawComparison | None:
-    """Return the comparison system of a law, or None for laws that have none (see `recognise`).
+    """Return the comparison system of a law, or None for laws that have none.
 
-    None too for parameters the inequalities do not cover: lambda, R(0) or a <= 0, gamma or k(0) < 0.
+    It rests on the law's equations, compared as polynomials (see `compared_law`), and on no name or class.
+    None too for parameters the inequalities do not cover: lambda, R(0), gamma or a <= 0, k(0) < 0.
     """
-    given, c = law.parameters, bounds.coupling
-    if any(given.get(name, 0) <= 0 for name in ("lambda", "R0")):
+    try:
+        known = compared_law(law)
+    except NoComparisonError:
         return None
-    kind = recognise(law).kind
-    if kind == "persistence-filter":
-        return PersistenceSystem(decay=given["lambda"], initial_filter=given["R0"], coupling=c)
-    if kind == "adaptive-scaling":
-        if given["a"] <= 0 or given["gamma"] < 0 or given["k0"] < 0:
-            return None
-        return AdaptiveSystem(
-            decay=given["lambda"],
-            initial_filter=given["R0"],
-            learning_rate=given["gamma"],
-            initial_gain=given["k0"],
-            weight=given["a"],
-            coupling=c,
+    if not known.adaptive:
+        return PersistenceSystem(
+            decay=known.decay, initial_filter=known.initial_filter, coupling=bounds.coupling
         )
-    return None
+    return AdaptiveSystem(
+        decay=known.decay,
+        initial_filter=known.initial_filter,
+        learning_rate=known.learning_rate,
+        initial_gain=known.initial_gain,
+        weight=known.weight,
+        coupling=bounds.coupling,
+    )
 
 
 def certify_floor(

@@ -21,7 +21,7 @@ from .worst_found import WorstFound
 
 PAGE = "docs/theory-floor.md"
 NO_PROOF_STEP = (
-    "the simulated run shows what this law does from one start; nothing is proved of it for the set"
+    "write the law with the equations of docs/theory-floor.md: + - * / alone, no limit on the torque in it"
 )
 MUELLER = "comparison theorem of Mueller and Walter; docs/theory-floor.md"
 

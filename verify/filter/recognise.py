@@ -1,85 +1,114 @@
-"""Which law a law is: what is proved of it rests on its equations as polynomials, never on name or class."""
+"""What a law is, read off its equations: whether its R is the filter, and which theorem covers it.
+
+A law's name, its class and what it says of itself are no evidence: a class derived from a built-in one may
+override anything. Its expressions are compared as polynomials, in exact rationals, with the equations that a
+theorem is about.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
-from typing import Any, final
+from fractions import Fraction
+from typing import final
+
+import casadi as ca
 
 from ...models.closed_loop import ClosedLoop, close_loop
-from ...models.laws import Law
+from ...models.laws import LAWS, Expression, Law
 from ...models.laws.scaled import filter_rate
 from .. import checker
 from ..certificates.format import as_text
 from ..certificates.program import NotAlgebraicError, write_lines
 from ..lyapunov.forms import law_form, symbol_names
 
-INITIAL = {"R": "R0", "k": "k0"}
-"""The parameter that each controller state of the family starts from."""
+
+class NoComparisonError(ValueError):
+    """A law that no comparison theorem covers, with the reason."""
+
+
+@final
+@dataclass(frozen=True)
+class ComparedLaw:
+    """A law of the family Omega = w + 2 g^2 kappa bv, with the numbers that stand in its equations.
+
+    Attributes
+    ----------
+    adaptive : kappa is the state k, else 1/R
+    decay : lambda, 1/s, > 0
+    learning_rate, weight : gamma, 1/(kg m^2 s), and a, kg m^2/s^2, > 0; zero where kappa = 1/R
+    initial_filter, initial_gain : R(0), s, > 0, and k(0), 1/s, >= 0
+    """
+
+    adaptive: bool
+    decay: Fraction
+    learning_rate: Fraction
+    weight: Fraction
+    initial_filter: Fraction
+    initial_gain: Fraction
+
+
+def compared_law(law: Law) -> ComparedLaw:
+    """Return which law of the family this is.
+
+    Raises
+    ------
+    NoComparisonError
+        If its equations are not those of the family, its states jump, or its initial values or
+        parameters are not covered.
+    """
+    if has_resets(law):
+        raise NoComparisonError(f"{law_words(law)} resets its states: no comparison theorem covers a jump")
+    loop = close_loop(law)
+    try:
+        form = law_form(loop)
+    except NotAlgebraicError as error:
+        raise NoComparisonError(f"no comparison theorem covers {law_words(law)}: {error}") from None
+    try:
+        found = checker.compared_law(
+            checker.Node(as_text({"law": form, "parameters": law.parameters}), "law")
+        )
+    except checker.Invalid as error:
+        raise NoComparisonError(f"no comparison theorem covers {law_words(law)}: {error}") from None
+    adaptive = found.gain == "adaptive-scaling"
+    kappa = loop.controller_states["k"] if adaptive else 1 / loop.controller_states["R"]
+    if loop.control.gain is None or not vanishes(loop, loop.control.gain - kappa):
+        raise NoComparisonError(
+            f"no comparison theorem covers {law_words(law)}: the gain it states (Control.gain) is not the "
+            f"kappa = {'k' if adaptive else '1/R'} of its torque"
+        )
+    start = {state.name: Fraction(state.initial) for state in law.controller_states}
+    if start["R"] <= 0 or start.get("k", Fraction(0)) < 0:
+        raise NoComparisonError(f"{law_words(law)}: a proof needs R(0) > 0 and k(0) >= 0")
+    return ComparedLaw(adaptive, found.lam, found.gamma, found.a, start["R"], start.get("k", Fraction(0)))
 
 
 def follows_filter(loop: ClosedLoop) -> bool:
-    """Whether the law's state R obeys R' = -lambda R + g^2 (1 + b0), as polynomials; its name is no proof."""
+    """Whether the law's state R obeys R' = -lambda R + g^2 (1 + b0), as polynomials, and never jumps."""
     R, decay = loop.controller_states.get("R"), loop.parameter_symbols.get("lambda")
-    if R is None or decay is None:
+    if R is None or decay is None or has_resets(loop.law):
         return False
     expected = filter_rate(loop.plant, loop.time_symbols, R, decay)
+    return vanishes(loop, loop.control.state_rates["R"] - expected)
+
+
+def vanishes(loop: ClosedLoop, expression: Expression) -> bool:
+    """Whether an expression is the zero polynomial in the loop's symbols (R may be divided by)."""
     symbols = symbol_names(loop)
     try:
-        lines = write_lines(symbols, [loop.control.state_rates["R"] - expected])
-        ring = checker.Ring(list(symbols))
-        program = checker.Node(list(lines.instructions), "filter")
+        lines = write_lines(symbols, [ca.SX(expression)])
+        ring = checker.Ring(list(symbols), [name for name in symbols if name == "R"])
+        program = checker.Node(list(lines.instructions), "expression")
         values = checker.run(program, ring, {name: ring.symbol(name) for name in symbols})
     except (NotAlgebraicError, checker.Invalid):
         return False
     return not values[lines.results[0][0]].terms
 
 
-@final
-@dataclass(frozen=True)
-class Recognised:
-    """What a law was found to be.
-
-    Attributes
-    ----------
-    kind : "persistence-filter" or "adaptive-scaling" if its torque, its controller rates and its initial
-        controller states are that law's, identically; else None
-    reason : why it is neither; empty if it is one
-    form : the law as certificates write it; empty if it is neither
-    """
-
-    kind: str | None
-    reason: str
-    form: dict[str, Any]
+def has_resets(law: Law) -> bool:
+    """Whether a law may reset its states at instants of its own."""
+    return "reset_instants" in vars(law) or type(law).reset_instants is not Law.reset_instants
 
 
-@lru_cache(maxsize=64)
-def recognise(law: Law) -> Recognised:
-    """Compare a law with the two whose comparison systems are proved, as polynomials in every symbol.
-
-    Neither the law's class nor its name counts: a class that derives from a built-in law and changes its
-    torque is another law, and a law of the user's own with the same equations is the same law.
-    """
-    name = type(law).__name__
-    if _resets(law):
-        return Recognised(None, f"law {name} resets its states, which no comparison system here covers", {})
-    try:
-        form = law_form(close_loop(law))
-        kind = checker.family_of(checker.Node(as_text(form), "law"))
-    except (NotAlgebraicError, checker.Invalid) as error:
-        return Recognised(None, f"law {name}: {error}", {})
-    if kind is None:
-        what = "its torque and controller rates are not those of persistence-filter or adaptive-scaling"
-        return Recognised(None, f"no comparison system is known for law {name}: {what}", {})
-    for state in law.controller_states:
-        if state.initial != law.parameters[INITIAL[state.name]]:
-            reason = f"law {name}: {state.name} does not start at its parameter {INITIAL[state.name]}"
-            return Recognised(None, reason, {})
-    return Recognised(kind, "", form)
-
-
-def _resets(law: Law) -> bool:
-    """Whether a law may reset its states: it has hooks of its own for that, in its class or on itself."""
-    hooks = ("reset_instants", "reset")
-    own = getattr(law, "__dict__", {})
-    return any(getattr(type(law), hook) is not getattr(Law, hook) or hook in own for hook in hooks)
+def law_words(law: Law) -> str:
+    """Name of a law for messages: a built-in one's own, else that of its class."""
+    return f"law {law.name}" if LAWS.get(law.name) is type(law) else f"law {type(law).__name__}"

@@ -20,12 +20,12 @@ from typing import final
 
 import numpy as np
 
-from ...models.laws import Law
 from ...models.types import Array
 from ..exact.balls import fraction_above, fraction_below, sqrt_above, sqrt_below
+from .adaptive import AdaptiveSystem
 from .certify import FilterLowerBound
-from .flowpipe import Box
-from .recognise import recognise
+from .flowpipe import Box, LawComparison
+from .persistence import PersistenceSystem
 
 OUTWARD = 1 + 1e-12
 """Covers fewer than 1000 roundings (1.2e-16 each) of operations on numbers of one sign."""
@@ -90,7 +90,7 @@ def torque_bound(floor: FilterLowerBound) -> TorqueBound:
     root = sqrt_above(floor.bounds.greatest)
     spin = c.y / sqrt_below(floor.bounds.least)
     n = greatest_bv(c.S)
-    q_low, q_high = _coefficient(floor.law, c)
+    q_low, q_high = _coefficient(floor.flowpipes[0].system, c)
     commanded = (
         np.maximum(np.abs(q_low), np.abs(q_high)) * greatest * n
         + 2 * c.g * c.high * n * root * c.y
@@ -110,26 +110,25 @@ def torque_bound(floor: FilterLowerBound) -> TorqueBound:
     )
 
 
-def _coefficient(law: Law, c: _Columns) -> tuple[Array, Array]:
+def _coefficient(system: LawComparison, c: _Columns) -> tuple[Array, Array]:
     """Bounds of q; each term's interval, added, then widened by its rounding."""
     g, low, high = c.g, c.low, c.high
     slope = [-4 * s * k for s in (c.slope_low, c.slope_high) for k in (low, high)]
     b0_low = 1.0 - np.minimum(c.S, 2.0)
     square = 2 * g**3 * high**2
     terms = [(np.minimum.reduce(slope), np.maximum.reduce(slope))]
-    kind, given = recognise(law).kind, law.parameters
-    if kind == "persistence-filter":
-        lam = fraction_above(given["lambda"])
+    if isinstance(system, PersistenceSystem):
+        lam = fraction_above(system.decay)
         # -2 g kappa' + 2 g^3 kappa^2 b0 = -2 g lambda kappa + 2 g^3 kappa^2 (1 + 2 b0)
         terms.append((-2 * g * lam * high, np.zeros_like(g)))
         terms.append((np.minimum(square * (1 + 2 * b0_low), 0.0), 3 * square))
-    elif kind == "adaptive-scaling":
-        gamma, a = fraction_above(given["gamma"]), fraction_above(given["a"])
+    elif isinstance(system, AdaptiveSystem):
+        gamma, a = fraction_above(system.learning_rate), fraction_above(system.weight)
         intake = np.minimum(2 * (c.y**2 + 2 * a * c.S), 2 * a * (1 + c.y**2 / (4 * a)) ** 2)
         terms.append((-2 * g**3 * gamma * c.R * intake, np.zeros_like(g)))
         terms.append((np.minimum(square * b0_low, 0.0), square))
     else:
-        raise TypeError(f"no torque bound is known for {type(law).__name__}")
+        raise TypeError(f"no torque bound is known for {type(system).__name__}")
     size = sum(np.maximum(np.abs(a), np.abs(b)) for a, b in terms)
     allowance = size * (OUTWARD - 1)
     return sum(a for a, _ in terms) - allowance, sum(b for _, b in terms) + allowance

@@ -65,7 +65,7 @@ def candidate(loop: ClosedLoop) -> Candidate:
     NoStorageError
         If there is neither, or the law's states jump.
     """
-    if type(loop.law).reset_instants is not Law.reset_instants:
+    if "reset_instants" in vars(loop.law) or type(loop.law).reset_instants is not Law.reset_instants:
         raise NoStorageError(f"law {loop.law.name} resets its states: a jump of V is not covered by V' <= 0")
     own = loop.law.storage(loop.plant, loop.time_symbols, loop.controller_states, loop.parameter_symbols)
     if own is not None:

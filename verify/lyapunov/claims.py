@@ -37,7 +37,8 @@ def lyapunov_claims(
 
     Notes
     -----
-    A law without a storage function gets one UNDECIDED claim that says so. Certificates are in the
+    A law without a storage function gets one UNDECIDED claim that says so; conditions on lambda are
+    claimed only of a law whose V' was proved to be the family's. Certificates are in the
     claims' evidence; `certificates_of` collects them.
     """
     try:
@@ -48,7 +49,8 @@ def lyapunov_claims(
     identity = identity_claim(chosen, body.exact_inertia)
     claims += [identity] if identity is not None else []
     claims.append(derivative_claim(chosen, body, tolerance=tolerance, schedule=schedule))
-    if chosen.right_side is not None and "lambda" in law.parameters:
+    proved = identity is not None and identity.verdict is Verdict.PROVED
+    if proved and "lambda" in law.parameters:  # the conditions speak of that V' only
         lam = law.parameters["lambda"]
         claims.append(paper_condition(lam, body, tolerance=tolerance))
         claims.append(

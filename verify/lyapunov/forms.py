@@ -9,9 +9,7 @@ from typing import Any
 import casadi as ca
 
 from ...models.closed_loop import INERTIA_NAMES, PLANT_STATES, ClosedLoop
-from ...models.laws import Expression
-from .. import checker
-from ..certificates.format import as_text
+from ...models.laws import LAWS, Expression
 from ..certificates.program import write_lines
 from .candidates import Candidate
 
@@ -33,20 +31,19 @@ def symbol_names(loop: ClosedLoop) -> dict[str, Expression]:
 def law_form(loop: ClosedLoop) -> dict[str, Any]:
     """Law as certificate data: designated torque and controller rates as instructions.
 
-    Its name is that of the equations it has, if the checker knows them, else the law's own.
+    A name only annotates: it is written where the law is a built-in one.
 
     Raises
     ------
-    checker.Invalid
-        If a polynomial has more terms or higher powers than the checker takes.
     NotAlgebraicError
         If the law uses more than + - * /.
     """
     control = loop.control
     rates = [control.state_rates[name] for name in loop.controller_states]
     lines = write_lines(symbol_names(loop), [ca.SX(control.torque), *(ca.SX(r) for r in rates)])
-    form = {
-        "name": loop.law.name,
+    law = loop.law
+    return {
+        **({"name": law.name} if LAWS.get(law.name) is type(law) else {}),
         "parameters": list(loop.parameter_symbols),
         "states": list(loop.controller_states),
         "signals": list(loop.time_symbols.signals),
@@ -54,9 +51,6 @@ def law_form(loop: ClosedLoop) -> dict[str, Any]:
         "torque": list(lines.results[0]),
         "rates": {n: r[0] for n, r in zip(loop.controller_states, lines.results[1:], strict=True)},
     }
-    # a law of the user's own with the equations of a built-in one is that law
-    kind = checker.family_of(checker.Node(as_text(form), "law"))
-    return form if kind is None else form | {"name": kind}
 
 
 def storage_form(

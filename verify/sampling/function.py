@@ -57,10 +57,15 @@ def derivative_function(loop: ClosedLoop) -> DerivativeFunction:
     Raises
     ------
     ValueError
-        If the law has neither, resets its states, or uses signals of time beside g.
+        If the law has neither, resets its states, misstates the rate of its gain, or uses signals of
+        time beside g.
     """
     if loop.time_symbols.signals:
         raise ValueError(f"law {loop.law.name} uses signals of time beside g: its V' is not sampled")
+    if not loop.has_true_gain_rate():
+        raise ValueError(
+            f"law {loop.law.name} returns a Control.gain_rate that is not the rate of Control.gain"
+        )
     chosen = candidate(loop)
     extra = {name: ca.SX.sym(name) for name in EXTRA_NAMES}
     own = chosen.value if chosen.right_side is None else None

@@ -94,7 +94,7 @@ def test_a_law_outside_the_family_is_undecided():
     found = answer(replace(QUESTION, law=QuaternionPD(proportional=F(1), derivative=F(1))))
     for claim in found.claims:
         assert claim.verdict is Verdict.UNDECIDED
-        assert "no comparison system" in claim.reason
+        assert "no comparison theorem covers law quaternion-pd" in claim.reason
 
 
 def test_rate_bounds_of_the_set_become_weighted_ones():
