@@ -501,8 +501,8 @@ class Poly:
         i = self.ring.index[name]
         return any(key[i] for key in self.terms)
 
-    def text(self, limit: int = 40) -> str:
-        """Return the polynomial for people, at most `limit` terms."""
+    def text(self, limit: int | None = None) -> str:
+        """Return the polynomial for people, whole or its first terms only."""
         parts: list[str] = []
         for key, value in sorted(self.terms.items(), reverse=True)[:limit]:
             powers = [
@@ -510,7 +510,7 @@ class Poly:
             ]
             factor = [] if abs(value) == 1 and powers else [show(abs(value))]
             parts.append(("- " if value < 0 else "+ ") + " ".join(factor + powers))
-        if len(self.terms) > limit:
+        if limit is not None and len(self.terms) > limit:
             parts.append(f"+ ... ({len(self.terms)} terms)")
         return " ".join(parts).removeprefix("+ ") or "0"
 
@@ -1024,7 +1024,7 @@ def law_equations(law: Node) -> str:
     values = dict(zip(("u1", "u2", "u3"), law_values(law)[:3], strict=True))
     states = [node.text() for node in law["states"].items()]
     values |= {f"{name}'": p for name, p in zip(states, law_values(law)[3:], strict=True)}
-    return ", ".join(f"{name} = {p.text(MAX_TERMS)}" for name, p in values.items())
+    return ", ".join(f"{name} = {p.text()}" for name, p in values.items())
 
 
 # --- kind: identity of the derivative ----------------------------------------------------------
@@ -1108,7 +1108,11 @@ def _domain_text(data: Node, claim: Node) -> str:
     where = "R > 0" if "R" in states else "all controller states"
     if claim["domain"].text() == "above floor":
         where = "R >= R_min for any R_min > 0, k_target = 1/R_min"
-    return where + (f", 0 <= g <= {show(claim['gain_bound'].number())}" if claim.has("gain_bound") else "")
+    if not claim.has("gain_bound"):
+        return where
+    bound = claim["gain_bound"].number()
+    require(bound > 0, "the bound on g must be positive")
+    return f"{where}, 0 <= g <= {show(bound)}"
 
 
 def inertia_vertices(data: Node) -> list[Matrix]:
@@ -2032,10 +2036,12 @@ def check_initial_set(data: Node, d: FloorData, witness: Node) -> str:
     enough = False
     if node.has("max_weighted_rate"):
         weighted = node["max_weighted_rate"].number()
+        require(weighted >= 0, "a bound of the rate must not be negative")
         words.append(f"sqrt(Omega'J Omega) <= {show(weighted)}")
         enough = y >= weighted
     if node.has("max_rate") or not node.has("max_weighted_rate"):
         rate = node["max_rate"].number() if node.has("max_rate") else Fraction(0)
+        require(rate >= 0, "a bound of the rate must not be negative")
         words.append(f"|w| <= {show(rate)} rad/s" if node.has("max_rate") else "at rest")
         g = d.profile.shapes[0][0] if d.profile.shapes[0] else Fraction(0)
         kappa = 1 / d.R0 if d.law == "persistence-filter" else d.k0
@@ -2133,6 +2139,7 @@ def check_filter_floor(data: Node, certificate: Node) -> list[str]:
             require(step.x["r"].is_at_least(floor), f"r falls below the floor after {show(step.start)} s")
     if claim.has("horizon"):
         horizon = claim["horizon"].number()
+        require(horizon > 0, "the horizon must be positive")
         reached = all(b.tail or b.steps[-1].stop >= horizon for b in bins)
         require(reached, "a bin ends before the horizon")
         when = f"on [0, {show(horizon)}] s"

@@ -33,6 +33,7 @@ from ..check.filter_question import floor_question
 from ..optimum.lower_bounds import transfers_data
 from ..simulated_run import RunFigures
 
+CONDITIONS = ("sharp-condition", "paper-condition")
 FILTER_STARTS = ("filter-start", "filter-start-counterexample")
 
 
@@ -141,8 +142,10 @@ def _unequal(part: Mapping[str, Any], known: _Known) -> Iterator[str]:
         _same(stated["parameters"].get(name), value) for name, value in known.filter.items()
     ):
         yield "R(0) or lambda of the filter"
+    if kinds & {*CONDITIONS} and not _same(stated["parameters"]["lambda"], known.filter.get("lambda")):
+        yield "lambda of the filter"
     for certificate in part["certificates"]:
-        yield from _unequal_claim(certificate, known.scenario)
+        yield from _unequal_claim(certificate, known)
 
 
 def _by_name(law: Mapping[str, Any], known: _Known) -> Mapping[str, str]:
@@ -156,9 +159,10 @@ def _by_name(law: Mapping[str, Any], known: _Known) -> Mapping[str, str]:
     return dict(as_text(values))
 
 
-def _unequal_claim(certificate: Mapping[str, Any], scenario: Scenario) -> Iterator[str]:
+def _unequal_claim(certificate: Mapping[str, Any], known: _Known) -> Iterator[str]:
     """Names of what a claim assumes beside the data, and the scenario does not say."""
-    kind, claim, schedule = certificate["kind"], certificate["claim"], scenario.schedule
+    kind, claim, scenario = certificate["kind"], certificate["claim"], known.scenario
+    schedule = scenario.schedule
     if kind == "filter-floor":
         tolerance = as_text({"attitude": scenario.tolerance.attitude, "rate": scenario.tolerance.rate})
         settling = claim.get("settling", {})
@@ -171,6 +175,11 @@ def _unequal_claim(certificate: Mapping[str, Any], scenario: Scenario) -> Iterat
         length = scenario.check.pe_window or default_length(schedule)
         if exact(claim["length"]) != length:
             yield "length of the moving integral"
+    elif kind == "sharp-condition":
+        adaptive = known.compared is not None and known.compared.adaptive
+        weight = known.compared.weight if known.compared is not None and adaptive else Fraction(1)
+        if exact(claim["weight"]) != weight:
+            yield "weight a of the condition"
     elif kind == "lyapunov-derivative" and "gain_bound" in claim:
         least: Fraction = greatest_gain_at(schedule)[0]
         if exact(claim["gain_bound"]) < least:
