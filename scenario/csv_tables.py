@@ -170,10 +170,10 @@ def _places(
 def _no_columns(line: _Line, headings: list[Heading], forms: Sequence[tuple[Column, Column]]) -> str:
     expected = ", ".join(f"'{a.names[0]},{b.names[0]}'" for a, b in forms)
     hint = ""
-    known = [name for form in forms for column in form for name in column.names]
+    known = [name for form in forms for column in form for name in column.names if len(name) > 1]
     for found in headings:
         near = get_close_matches(found.name, known, n=1, cutoff=0.5)
-        if near and found.name not in known and len(found.name) > 1:
+        if near and found.name not in known:
             hint = f" (did you mean {quote(near[0])} for {quote(found.name)}?)"
             break
     if any("duration" in h.name and h.name not in known for h in headings):

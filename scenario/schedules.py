@@ -18,7 +18,9 @@ from .units import TIME
 MAX_COUNT = 200_000
 """Windows that `count` may ask for."""
 _OPENS = Column(("on", "start", "begin", "open", "opens", "t_on", "start_time", "window_start"), TIME)
-_CLOSES = Column(("off", "stop", "end", "close", "closes", "t_off", "stop_time", "end_time"), TIME)
+_CLOSES = Column(
+    ("off", "stop", "end", "close", "closes", "t_off", "stop_time", "end_time", "window_end"), TIME
+)
 _LASTS = Column(("duration", "length", "width"), TIME)
 WINDOW_COLUMNS = ((_OPENS, _CLOSES), (_OPENS, _LASTS))
 """What a CSV of windows may hold: when each opens, and when it closes or how long it lasts."""
