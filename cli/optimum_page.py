@@ -16,6 +16,7 @@ from ..study.optimum.record import (
     switch_words,
     terminal_words,
 )
+from ..study.optimum.run import final_time, idle_words
 from .claim_tables import plain_table
 
 if TYPE_CHECKING:
@@ -37,9 +38,11 @@ def print_optimum(console: Console, study: OptimumStudy) -> None:
     gain = scenario.optimum.profile == "gain"
     console.print(
         f"Start: {start_words(study.optima[0])}. End: {terminal_words(study.optima[0])}, by tf = "
-        f"{float(first.horizon):g} s; "
+        f"{float(final_time(scenario)):g} s; "
         + ("torque up to p g(t)." if gain else "full torque inside the windows.")
     )
+    if idle := idle_words(scenario, first):
+        console.print(f"Idle time left out, exactly: {idle}.")
     console.print()
     table = plain_table("Least peak", "certified >=", "found", "gap", "standing", "local optima")
     for optimum in study.optima:

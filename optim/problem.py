@@ -163,6 +163,28 @@ class TransferProblem:
         window = PiecewisePolynomial(knots, tuple(piece.shape for piece in pieces))
         return replace(self, window=window)
 
+    def without_idle(self) -> tuple[TransferProblem, Fraction]:
+        """State the same transfer without long idle ends; and the instant, s, from which its time counts.
+
+        Both cuts are exact. A body at rest stays so while no torque acts: the transfer may begin with the
+        first window. Without torque |J w| is constant: one that must end exactly at rest is at rest since the
+        last window, so the transfer may end with it. Ends shorter than the windows' own span stay, so that
+        ordinary transfers keep their time.
+        """
+        if not self.open_pieces:
+            return self, Fraction(0)
+        first, last = self.open_pieces[0].start, self.open_pieces[-1].end
+        span = last - first
+        shorter = self
+        if self.terminal.rate == 0 and self.horizon - last > span:
+            shorter = self.until(last)
+        if not self.starts_at_rest or first <= span:
+            return shorter, Fraction(0)
+        pieces = [piece for piece in shorter.window.pieces if piece.start >= first]
+        knots = (Fraction(0), *(piece.end - first for piece in pieces))
+        window = PiecewisePolynomial(knots, tuple(piece.shape for piece in pieces))
+        return replace(shorter, window=window), first
+
     @cached_property
     def unit_attitude(self) -> Array:
         """Start quaternion as floats, unit length, (4,)."""

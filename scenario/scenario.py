@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
 from typing import final
@@ -120,10 +121,12 @@ def build_scenario(file: ScenarioFile, document: Document) -> Scenario:
     """Build a scenario from its typed file."""
     body, tolerance, warnings = spacecraft.build(file.spacecraft, document)
     schedule_choice = schedules.build(file.schedule, document)
+    _require_reach(file, schedule_choice.schedule, document)
     at_once = schedule_choice.schedule.profile.shapes[0]
     starts_in_window = bool(at_once and at_once[0])
     state, bounds = initial.build(file, document, body, starts_in_window=starts_in_window)
     choices = laws.build(file, document)
+    warnings += schedule_choice.warnings
     if bounds.max_angle_deg > 180 + initial.ANGLE_ALLOWANCE:
         warnings += (
             f"{document.where('initial' if bounds.from_state else 'initial_set')}: error angle up to "
@@ -154,6 +157,43 @@ def build_scenario(file: ScenarioFile, document: Document) -> Scenario:
         warnings=warnings,
         sha256=fingerprint(file, _attachments(file, document, choices)),
     )
+
+
+MAX_IDLE = Fraction(10**8)
+"""Seconds (three years) that a run may go on after a table's end, where nothing acts any more."""
+MAX_OUTPUTS = 10**7
+"""Instants at which a run's histories are written, at most."""
+
+
+def _require_reach(file: ScenarioFile, schedule: Schedule, document: Document) -> None:
+    """Refuse a run whose size no machine has, with the number that is too large.
+
+    Raises
+    ------
+    ScenarioError
+        Naming the horizon or the output step.
+    """
+    horizon, step = file.simulation.horizon, file.simulation.output_step
+    if horizon is None:
+        return
+    where = document.where("simulation.horizon")
+    windows = schedule.windows_before(horizon)
+    if windows > schedules.MAX_COUNT:
+        raise ScenarioError(
+            where,
+            f"{float(horizon):g} s holds {Decimal(windows):.3g} windows: at most {schedules.MAX_COUNT} fit",
+        )
+    if schedule.period is None and horizon - schedule.end > MAX_IDLE:
+        raise ScenarioError(
+            where,
+            f"{float(horizon):g} s goes on for more than {float(MAX_IDLE):g} s after the table's end "
+            f"({float(schedule.end):g} s), where nothing acts: give an earlier end",
+        )
+    if step is not None and horizon / step > MAX_OUTPUTS:
+        raise ScenarioError(
+            document.where("simulation.output_step"),
+            f"{float(step):g} s asks for {Decimal(int(horizon / step)):.3g} instants: at most {MAX_OUTPUTS}",
+        )
 
 
 def _report(report: ReportTable, document: Document, choices: tuple[LawChoice, ...]) -> ReportTable:

@@ -39,11 +39,14 @@ class ScheduleChoice:
         "hermite-as-printed" lets g act until `thruster_fall` after `off` (erratum E9).
     source : str
         Where the windows come from, in words.
+    warnings : tuple of str
+        What was mended in it, in words.
     """
 
     schedule: Schedule
     shape: str
     source: str
+    warnings: tuple[str, ...] = ()
 
     @property
     def overruns_as_printed(self) -> bool:
@@ -78,6 +81,7 @@ def build(table: ScheduleTable, document: Document) -> ScheduleChoice:
         return ScheduleChoice(schedule, "measured", thrust.described(table.thrust))
     windows, locate, source = _windows(table, document)
     period = table.period if table.count is None else None
+    windows, warnings = _without_noise(windows, locate)
     _check_order(windows, period, locate)
     name = table.shape or "hermite"
     try:
@@ -92,7 +96,7 @@ def build(table: ScheduleTable, document: Document) -> ScheduleChoice:
         raise
     except ValueError as error:
         raise ScenarioError(document.where("schedule"), str(error)) from None
-    return ScheduleChoice(schedule, name, source)
+    return ScheduleChoice(schedule, name, source, warnings)
 
 
 def _refuse_stray_keys(table: ScheduleTable, form: str, document: Document) -> None:
@@ -141,6 +145,32 @@ def _windows(table: ScheduleTable, document: Document) -> tuple[list[Window], Lo
     windows = [Window(k * period + on, k * period + on + on_time) for k in range(count)]
     many = "endless" if table.count is None else f"{count} windows"
     return windows, lambda _: key, f"period {float(period):g} s, on {float(on_time):g} s, {many}"
+
+
+NOISE = Fraction(1, 10**9)
+"""Gaps and overlaps below this share of the shorter window beside them are taken for rounding."""
+
+
+def _without_noise(windows: list[Window], locate: Locate) -> tuple[list[Window], tuple[str, ...]]:
+    """Let windows touch that are apart, or overlap, by less than any thruster could tell; and say so.
+
+    The edges 0.3 and 0.30000000000000004 are one instant, written by two sums of floats.
+    """
+    mended, places = windows[:1], []
+    for i, window in enumerate(windows[1:], start=1):
+        before = mended[-1]
+        shorter = min(before.length, window.length)
+        if before.off != window.on and abs(window.on - before.off) < NOISE * shorter:
+            window = Window(before.off, window.off)
+            places.append(i)
+        mended.append(window)
+    if not places:
+        return windows, ()
+    many = f" (and {len(places) - 1} more)" if len(places) > 1 else ""
+    return mended, (
+        f"{locate(places[0])}{many}: opens within rounding of the close of the window before it: "
+        "taken as the same instant",
+    )
 
 
 def _check_order(windows: Sequence[Window], period: Fraction | None, locate: Locate) -> None:

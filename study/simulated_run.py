@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any, final
 
 import numpy as np
 
 from ..models.closed_loop import Saturation
 from ..models.laws import Law
+from ..models.schedule.variants import since
 from ..models.simulation import (
     Figures,
     Invariants,
@@ -19,6 +21,7 @@ from ..models.simulation import (
     read_figures,
     simulate,
 )
+from ..models.simulation.idle import idle_lead
 from ..models.types import Array
 from ..reports import parts
 from ..scenario import Scenario
@@ -34,12 +37,14 @@ class Run:
     trajectory : None if the run stopped before the horizon; then `failure` says where and why
     figures : over the whole run
     drift : how well the run kept what must be conserved
+    origin : the instant from which the times of trajectory and figures count, s (see `idle_lead`)
     """
 
     trajectory: Trajectory | None
     figures: Figures | None = None
     drift: Invariants | None = None
     failure: str = ""
+    origin: Fraction = Fraction(0)
 
 
 @final
@@ -69,6 +74,7 @@ def seen_in(scenario: Scenario, run: Run | None) -> RunFigures:
     over = None
     if scenario.limits is not None and not run.trajectory.is_saturated_model:
         over = _excess_instant(run.trajectory, float(scenario.limits.torque), peak.value, euclidean=euclidean)
+        over = None if over is None else over + float(run.origin)
     return RunFigures(floor.value if floor is not None else None, peak.value, over)
 
 
@@ -88,21 +94,24 @@ def run_law(scenario: Scenario, law: Law) -> Run:
     saturation = None
     if scenario.simulation.saturate and scenario.limits is not None:
         saturation = Saturation(scenario.limits.torque, scenario.limits.norm)
+    lead = idle_lead(law, scenario.schedule, scenario.initial.rate)
+    if lead >= scenario.horizon:
+        lead = Fraction(0)
     try:
         trajectory = simulate(
             law,
             scenario.body,
-            scenario.schedule,
+            since(scenario.schedule, lead) if lead else scenario.schedule,
             quaternion=scenario.initial.quaternion,
             rate=scenario.initial.rate,
-            horizon=scenario.horizon,
+            horizon=scenario.horizon - lead,
             saturation=saturation,
         )
     except SimulationError as error:
         return Run(None, failure=str(error))
     tolerance = scenario.tolerance
     figures = read_figures(trajectory, attitude=tolerance.attitude, rate=tolerance.rate)
-    return Run(trajectory, figures, invariants(trajectory))
+    return Run(trajectory, figures, invariants(trajectory), origin=lead)
 
 
 def metrics(run: Run) -> list[dict[str, Any]]:
@@ -114,7 +123,7 @@ def metrics(run: Run) -> list[dict[str, Any]]:
     if settling is None:
         out.append(parts.quantity("settling_time", None, unit="s", note="not settled within the horizon"))
     else:
-        out.append(_figure("settling_time", settling, "s", "settling time"))
+        out.append(_figure("settling_time", settling + float(run.origin), "s", "settling time"))
     out += [
         _figure("peak_torque_component", torque.peak_component.value, "N m", "peak |g u|, largest component"),
         _figure("peak_torque_euclidean", torque.peak_euclidean.value, "N m", "peak |g u|, Euclidean"),
@@ -150,8 +159,8 @@ def run_entry(
     """
     assert run.trajectory is not None
     trajectory = run.trajectory
-    times = output_times(scenario)
-    states, signals = trajectory.state(times), trajectory.signals(times)
+    times, local = output_times(scenario), output_times(scenario, run.origin)
+    states, signals = trajectory.state(local), trajectory.signals(local)
     arrays = {
         f"{key}.time": times,
         f"{key}.quaternion": states[:4].T,
@@ -168,6 +177,11 @@ def run_entry(
         roles["controller"] = {name: f"{key}.controller.{name}" for name in controller}
         arrays |= {f"{key}.controller.{name}": states[7 + i] for i, name in enumerate(controller)}
     notes = [f"The run covers [0, {float(scenario.horizon):g}] s."]
+    if run.origin:
+        notes.append(
+            f"From rest and without torque nothing happens before t = {float(run.origin):.10g} s: the run "
+            "was integrated from there on, in time counted from there."
+        )
     if trajectory.is_saturated_model:
         notes.append("The torque was limited in this run: no claim covers a saturated run.")
     entry = {
@@ -182,11 +196,14 @@ def run_entry(
     return entry, arrays
 
 
-def output_times(scenario: Scenario) -> Array:
-    """Times of the histories: every output step from 0 to the horizon, which is always the last, s."""
+def output_times(scenario: Scenario, origin: Fraction = Fraction(0)) -> Array:
+    """Times of the histories: every output step from 0 to the horizon, which is always the last, s.
+
+    Counted from `origin`, exactly; what lies before it counts as 0 then.
+    """
     step, horizon = scenario.simulation.output_step, scenario.horizon
     count = int(horizon / step)
-    times = [float(step * i) for i in range(count + 1)]
+    times = [float(max(step * i - origin, Fraction(0))) for i in range(count + 1)]
     if step * count < horizon:
-        times.append(float(horizon))
+        times.append(float(horizon - origin))
     return np.array(times)

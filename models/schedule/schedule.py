@@ -98,6 +98,14 @@ class Schedule:
                 return
             yield Piece(knots[i] + offset, knots[i + 1] + offset, shapes[i])
 
+    def windows_before(self, stop: Fraction) -> int:
+        """Return how many windows open before `stop`, counted without listing them."""
+        if self.period is None:
+            return sum(window.on < stop for window in self.windows)
+        cycles = max(stop // self.period, 0)
+        rest = stop - cycles * self.period
+        return cycles * len(self.windows) + sum(window.on < rest for window in self.windows)
+
     def windows_between(self, start: Fraction, stop: Fraction) -> Iterator[Window]:
         """Thruster windows that meet (start, stop), whole, in absolute time."""
         cycle = Fraction(0) if self.period is None else start // self.period - 1

@@ -35,6 +35,29 @@ def unrolled(schedule: Schedule, cycles: int) -> Schedule:
     )
 
 
+def since(schedule: Schedule, instant: Fraction) -> Schedule:
+    """Return a finite table with its time counted from an instant before which nothing acts.
+
+    Raises
+    ------
+    ValueError
+        If the schedule is periodic, or something happens before the instant.
+    """
+    pieces = list(
+        zip(schedule.profile.shapes, schedule.profile.knots, schedule.profile.knots[1:], strict=False)
+    )
+    quiet = all(not any(shape) for shape, start, _ in pieces if start < instant)
+    if schedule.period is not None or not quiet or schedule.windows[0].on < instant:
+        raise ValueError(f"time cannot be counted from {float(instant):g} s: the schedule acts before it")
+    later = [(shape, max(start, instant), end) for shape, start, end in pieces if end > instant]
+    knots = (Fraction(0), *(end - instant for _, _, end in later))
+    return replace(
+        schedule,
+        windows=tuple(Window(w.on - instant, w.off - instant) for w in schedule.windows),
+        profile=PiecewisePolynomial(knots, tuple(shape for shape, _, _ in later)),
+    )
+
+
 def without_windows(schedule: Schedule, missed: Collection[int]) -> Schedule:
     """Return the schedule with some windows (counted from 0) never fired: neither listed nor acting.
 

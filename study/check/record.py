@@ -174,7 +174,10 @@ def case_entry(scenario: Scenario, case: Case, key: str) -> tuple[dict[str, Any]
     if case.run is not None and case.run.trajectory is not None:
         derivative = next((claim for claim in case.claims if claim.key == "lyapunov.derivative"), None)
         history = storage_history(
-            case.run.trajectory, output_times(scenario), case.findings.reference_floor, derivative
+            case.run.trajectory,
+            output_times(scenario, case.run.origin),
+            case.findings.reference_floor,
+            derivative,
         )
         entry, arrays = run_entry(scenario, case.run, f"{key}.run", case.choice.label, history)
         runs.append(entry)

@@ -11,7 +11,7 @@ from ...reports import parts
 from ...reports.provenance import provenance
 from ...reports.record import Record
 from ..check.record import scenario_entry
-from .run import Optimum, OptimumStudy
+from .run import Optimum, OptimumStudy, final_time, idle_words
 
 if TYPE_CHECKING:
     from ...optim.peak import LeastImpulseFound, LeastTime, Switching, TorqueHistory
@@ -62,8 +62,8 @@ def optimum_entry(study: OptimumStudy, optimum: Optimum) -> tuple[dict[str, Any]
         "label": f"least peak, {problem.norm.name}",
         "norm": optimum.key,
         "profile": study.scenario.optimum.profile,
-        "terminal": terminal_words(optimum),
-        "final_time": parts.quantity("final_time", float(problem.horizon), unit="s"),
+        "terminal": "; ".join(filter(None, (terminal_words(optimum), idle_words(study.scenario, problem)))),
+        "final_time": parts.quantity("final_time", float(final_time(study.scenario)), unit="s"),
         "value": parts.figure_of("least_peak", answer.peak if held else None, digits=6, unit=unit),
         "residuals": residuals(optimum),
         "local_optima": {

@@ -235,19 +235,58 @@ def norm_of(scenario: Scenario, key: NormKey) -> Norm:
         raise ScenarioError(where, str(error)) from None
 
 
+MAX_TRANSFER_WINDOWS = 2000
+"""Windows of a transfer that is solved: the search takes several cells, and their derivatives, for each."""
+
+
 def transfer(scenario: Scenario, norm: Norm) -> TransferProblem:
-    """State the scenario's transfer: its start, windows, final time and tolerances."""
-    table = scenario.optimum
-    return TransferProblem.through(
+    """State the scenario's transfer: start, windows, final time, tolerances; long idle ends left out."""
+    return transfer_and_origin(scenario, norm)[0]
+
+
+def transfer_and_origin(scenario: Scenario, norm: Norm) -> tuple[TransferProblem, Fraction]:
+    """State the scenario's transfer, and the instant from which its time counts, s.
+
+    Raises
+    ------
+    ScenarioError
+        If there are more windows before the final time than can be solved.
+    """
+    from ...scenario import ScenarioError
+
+    table, horizon = scenario.optimum, final_time(scenario)
+    windows = scenario.schedule.windows_before(horizon)
+    if windows > MAX_TRANSFER_WINDOWS:
+        raise ScenarioError(
+            f"{scenario.path.name}: optimum.final_time",
+            f"{windows} windows open before {float(horizon):g} s, and each is resolved: give a final time "
+            f"with at most {MAX_TRANSFER_WINDOWS}",
+        )
+    problem = TransferProblem.through(
         scenario.schedule,
         body=scenario.body,
-        horizon=final_time(scenario),
+        horizon=horizon,
         attitude=[Fraction(x) for x in scenario.initial.attitude],
         rate=scenario.initial.exact_rate,
         norm=norm,
         terminal=Terminal(attitude=table.attitude_tolerance, rate=table.rate_tolerance),
         profile=WindowProfile.GAIN if table.profile == "gain" else WindowProfile.FULL,
     )
+    return problem.without_idle()
+
+
+def idle_words(scenario: Scenario, problem: TransferProblem) -> str:
+    """Say which idle ends were left out, or nothing."""
+    _, origin = transfer_and_origin(scenario, problem.norm)
+    end = origin + problem.horizon
+    words = []
+    if origin > 0:
+        words.append(
+            f"a body at rest stays so until the first window: times count from t = {float(origin):.10g} s"
+        )
+    if end < final_time(scenario):
+        words.append(f"a body at rest after the last window stays so: solved until t = {float(end):.10g} s")
+    return "; ".join(words)
 
 
 def final_time(scenario: Scenario) -> Fraction:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, final
 
 from ...optim.comparison.equal_terms import NormName
-from ...optim.schedule_study import LeastOnTime, ScheduleCase, least_on_time, study_schedules
+from ...optim.comparison.measure import Task
+from ...optim.schedule_study import LeastOnTime, ScheduleCase, ScheduleFamily, least_on_time, study_schedules
 from ...optim.tuning.conditions import certified_floor
 from ...reports import parts
 from ...reports.record import Record
@@ -58,6 +60,7 @@ def run_schedule_study(
     duty = scenario.study.duty_cycles or DEFAULT_DUTY
     time = scenario.optimum.final_time or scenario.horizon
     built, task, norm = choice.build(), task_of(scenario), norm or scenario.optimum.norm
+    _require_windows_that_fit(scenario, task, periods, duty)
     cases = study_schedules(
         built, task, periods, duty, time=time, norm=norm, floor=certified_floor, executor=executor
     )
@@ -71,6 +74,22 @@ def run_schedule_study(
             for period in periods
         )  # fmt: skip
     return ScheduleStudy(scenario, choice, norm, time, cases, least)
+
+
+def _require_windows_that_fit(
+    scenario: Scenario, task: Task, periods: Sequence[Fraction], duty: Sequence[Fraction]
+) -> None:
+    """Refuse a period in which the window of some duty cycle cannot stand."""
+    family = ScheduleFamily()
+    for period in periods:
+        for share in duty:
+            try:
+                family.task(task, period, share * period)
+            except ValueError as error:
+                raise ScenarioError(
+                    f"{scenario.path.name}: study",
+                    f"period {float(period):g} s with duty cycle {float(share):g}: {error}",
+                ) from None
 
 
 def schedule_record(study: ScheduleStudy) -> Record:

@@ -9,10 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from ...models.laws import Law
 from ...optim.comparison.equal_terms import NormName
 from ...optim.tuning.conditions import CertifiedConvergence
 from ...optim.tuning.front import Front, pareto_front
 from ...optim.tuning.search import DifferentialEvolution
+from ...optim.tuning.space import SearchSpace
 from ...optim.tuning.tune import Tuned, tune
 from ...reports import parts
 from ...reports.record import Record
@@ -41,8 +43,10 @@ def run_tuning(
     time = settle if settle is not None else scenario.tune.settle
     if time is None:
         raise ScenarioError(f"{scenario.path.name}: tune.settle", "required (or --settle), but missing")
+    built = scenario.law(label).build()
+    require_search_space(scenario, built)
     return tune(
-        scenario.law(label).build(),
+        built,
         task_of(scenario),
         settle=time,
         norm=norm or scenario.tune.norm,
@@ -51,6 +55,15 @@ def run_tuning(
         method=_method(scenario, seed),
         certify=conditions_on(scenario, scenario.law(label)),
     )
+
+
+def require_search_space(scenario: Scenario, law: Law) -> None:
+    """Refuse a search without a parameter that may move."""
+    try:
+        SearchSpace.around(law, scenario.tune.bounds)
+    except ValueError as error:
+        hint = "give at least one parameter of [tune] bounds a low end below its high end"
+        raise ScenarioError(f"{scenario.path.name}: tune.bounds", f"{error}: {hint}") from None
 
 
 def run_front(
@@ -67,8 +80,11 @@ def run_front(
         If no law has such a label.
     """
     choices = [scenario.law(label) for label in labels] or list(scenario.laws)
+    laws = {choice.label: choice.build() for choice in choices}
+    for law in laws.values():
+        require_search_space(scenario, law)
     return pareto_front(
-        {choice.label: choice.build() for choice in choices},
+        laws,
         task_of(scenario),
         settles,
         norm=norm or scenario.tune.norm,

@@ -103,6 +103,24 @@ def _reach(problem: TransferProblem) -> float:
     return float(np.linalg.norm(norm.control_matrix, axis=0).sum())
 
 
+def missing_direction(problem: TransferProblem) -> Explanation | None:
+    """Say along which axis one-sided thrusters cannot push, if there is one; it proves nothing.
+
+    Transfers that need no push that way are made all the same: look at it after a search has failed.
+    """
+    norm = problem.norm
+    if not isinstance(norm, ThrusterAxes) or norm.spans_all_directions:
+        return None
+    missing = norm.facets[0][int(np.argmin(norm.facets[1]))]
+    axis = ", ".join(f"{round(float(x), 3) + 0.0:.3f}" for x in missing)
+    return Explanation(
+        f"no start led to a feasible transfer, and the one-sided thrusters cannot push along ({axis}) at all",
+        "add a thruster that pushes that way, so that every torque can be made; or try more starts",
+        impossible=False,
+        certain=False,
+    )
+
+
 def explain(problem: TransferProblem, limit: float | None = None) -> Explanation | None:
     """Say why no torque, or none within `limit` (norm's unit), makes the transfer; None if one may."""
     if arrives_by_itself(problem):
@@ -115,20 +133,9 @@ def explain(problem: TransferProblem, limit: float | None = None) -> Explanation
             "choose a later tf, or a schedule that opens earlier",
             impossible=True,
         )
-    norm = problem.norm
-    if isinstance(norm, ThrusterAxes) and not norm.spans_all_directions:
-        missing = norm.facets[0][int(np.argmin(norm.facets[1]))]
-        axis = ", ".join(f"{round(float(x), 3) + 0.0:.3f}" for x in missing)
-        if problem.starts_at_rest:
-            return Explanation(
-                f"the one-sided thrusters cannot push along ({axis}) at all",
-                "add a thruster that pushes that way, so that every torque can be made",
-                impossible=False,
-                certain=False,
-            )
     if limit is None:
         return None
-    unit = norm.unit
+    unit = problem.norm.unit
     momentum = float(np.linalg.norm(problem.start_momentum))
     absorb, travel = absorption_peak(problem), travel_peak(problem)
     if absorb > limit:

@@ -16,7 +16,7 @@ from ..transcription.mesh import Mesh, build_mesh
 from ..transcription.scaling import ScaledProblem, scale
 from ..transcription.shooting import Shooting
 from .assemble import at_rest_already, without_history
-from .explain import arrives_by_itself, explain
+from .explain import arrives_by_itself, explain, missing_direction
 from .finish import Finish
 from .guess import bend, control_at, first_guess
 from .options import LocalSolver, MultiStart, Refinement
@@ -93,15 +93,11 @@ def minimum_peak(
     if not candidates and solver is None:
         candidates, record = _search(scaled, mesh, NonlinearProgram(), search, near)
     if not candidates:
-        return replace(
-            without_history(
-                problem,
-                Standing.UNDECIDED,
-                "no start led to a feasible transfer",
-                "raise the number of starts",
-            ),
-            search=record,
-        )
+        lack = missing_direction(problem)
+        reason, step = ("no start led to a feasible transfer", "raise the number of starts")
+        if lack is not None:
+            reason, step = lack.reason, lack.next_step
+        return replace(without_history(problem, Standing.UNDECIDED, reason, step), search=record)
     finish = Finish(problem, fast, solver is None, refinement, record)
     first = finish(candidates[0])
     if first.standing is Standing.CHECKED:

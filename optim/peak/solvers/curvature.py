@@ -66,7 +66,7 @@ def lagrangian_curvature(
     for cell, g in enumerate(group):
         share = shooting.weights[cell] / np.sqrt(mass[g])
         rows[:, cell] = share * vectors[m * g : m * g + m, keep].T
-    return Curvature(rows.reshape(len(keep), -1), values[keep])
+    return Curvature(rows.reshape(len(keep), shooting.cells * m), values[keep])
 
 
 def _groups(shooting: Shooting) -> tuple[NDArray[np.int64], Array]:

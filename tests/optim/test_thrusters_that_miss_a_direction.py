@@ -1,0 +1,38 @@
+"""Thrusters that cannot push every way still make the transfers that need no push that way."""
+
+from fractions import Fraction as F
+
+import pytest
+from intermit.models.rigid_body import RigidBody
+from intermit.models.schedule import Window, build_schedule
+from intermit.models.schedule.profiles import Hermite
+from intermit.optim import MultiStart, ThrusterAxes, TransferProblem, minimum_peak
+from intermit.optim.peak import Standing
+from intermit.optim.problem import quaternion_from_axis_angle
+
+HALF_EQUIPPED = ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1))
+
+
+def solve(axis, degrees, thrusters=HALF_EQUIPPED, starts=1):
+    body = RigidBody(((F(3), F(0), F(0)), (F(0), F(2), F(0)), (F(0), F(0), F("1.5"))))
+    problem = TransferProblem.through(
+        build_schedule([Window(F(0), F(20))], Hermite()),
+        body=body,
+        horizon=20,
+        attitude=quaternion_from_axis_angle(axis, degrees * 3.141592653589793 / 180),
+        norm=ThrusterAxes(tuple(tuple(F(x) for x in axis) for axis in thrusters)),
+    )
+    return minimum_peak(problem, search=MultiStart(starts=starts))
+
+
+@pytest.mark.slow
+def test_a_turn_about_an_axis_with_both_jets_is_found():
+    answer = solve((1, 0, 0), 40)
+    assert answer.standing is Standing.CHECKED
+    assert answer.peak <= 4 * 3 * 0.6981317007977318 / 20**2 * (1 + 1e-6)  # bang-bang about x alone
+
+
+def test_a_set_that_cannot_turn_back_is_undecided_with_the_direction():
+    answer = solve((0, 0, 1), 40, thrusters=((0, 0, 1), (0, 1, 0), (1, 0, 0), (-1, 0, 0)))
+    assert answer.standing is Standing.UNDECIDED
+    assert "cannot push along" in answer.reason
