@@ -82,11 +82,13 @@ def test_open_time_is_exact():
     assert open_time(problem) == 7 * Fraction("3.21")
 
 
-def test_thrusters_that_push_one_way_only_are_named():
+def test_thrusters_that_push_one_way_only_are_named_once_the_search_has_failed():
     one_way = ThrusterAxes.from_rows([[1, 0, 0], [0, 1, 0], [0, 0, 1]])
     problem = paper_transfer(one_way, horizon="11.22")
-    answer = minimum_peak(problem, search=ONE)
-    assert answer.standing is not Standing.CHECKED
+    answer = minimum_peak(problem, search=ONE, refinement=Refinement(cells=8))
+    assert answer.standing is Standing.UNDECIDED
+    assert answer.search.starts
+    assert "no start led to a feasible transfer" in answer.reason
     assert "cannot push along" in answer.reason
     normal = np.array([float(x) for x in answer.reason.split("(")[1].split(")")[0].split(",")])
     assert (one_way.control_matrix.T @ normal).max() <= 1e-9

@@ -45,6 +45,8 @@ class SwitchingFunction:
         sigma(s) = c0 + c1 s + c2 s^2 with s in [0, 1] on the cell.
     loss : (n,)
         What the constant control loses on each cell, as a fraction of the peak.
+    largest_worth : float
+        Largest support(sigma) at an edge: fraction of the peak gained by a unit of open solver time.
     """
 
     answer: LocalAnswer
@@ -53,6 +55,7 @@ class SwitchingFunction:
     length: Array
     coefficients: Array
     loss: Array
+    largest_worth: float
 
     @property
     def total_loss(self) -> float:
@@ -103,7 +106,9 @@ def switching_function(answer: LocalAnswer) -> SwitchingFunction:
     ideal = ((w * GAUSS_WEIGHTS) * goal.hamiltonian_gain(norm, sigma, flow)).sum(axis=1) * length
     done = goal.hamiltonian_gain(norm, integral, answer.shooting.weights)
     loss = np.maximum(ideal - done, 0.0) / goal.unit(answer.value)
-    return SwitchingFunction(answer, cells, mesh.edges[cells], length, coefficients, loss)
+    cost = np.full(nodes.shape[:-1], 1.0 / float(mesh.impulse.sum()))
+    worth = float(goal.hamiltonian_gain(norm, nodes, cost).max()) / goal.unit(answer.value)
+    return SwitchingFunction(answer, cells, mesh.edges[cells], length, coefficients, loss, worth)
 
 
 def _moments(profile: Array) -> Array:

@@ -23,6 +23,8 @@ from ..transcription.propagate import right_hand_side
 
 TERMINAL_STANDARD = 1e-8
 """Largest terminal excess allowed: rotation angle in rad, rate times the transfer time in rad."""
+TERMINAL_SHARE = 1e-6
+"""The same as a fraction of the way to go, which is what counts where that is small."""
 
 
 @final
@@ -49,6 +51,11 @@ class Excess:
     def worst(self) -> float:
         """Largest of both excesses, rad."""
         return max(self.attitude, self.rate)
+
+
+def way_to_go(problem: TransferProblem) -> float:
+    """Rotation angle to the target and start rate times the transfer time, rad."""
+    return problem.angle + float(np.linalg.norm(problem.start_rate)) * float(problem.horizon)
 
 
 def terminal_excess(problem: TransferProblem, end: Array) -> Excess:
@@ -79,6 +86,8 @@ class ReplayedHistory:
         Largest torque where w = 0, N m.
     effort_excess : float
         How far the peak effort is from covering each cell's torque, relative; <= 0 is right.
+    standard : float
+        Largest terminal excess allowed, rad.
     """
 
     states: Array
@@ -86,6 +95,7 @@ class ReplayedHistory:
     outside_torque: float
     effort_excess: float
     evaluations: int
+    standard: float = TERMINAL_STANDARD
 
     @property
     def terminal_excess(self) -> float:
@@ -95,11 +105,22 @@ class ReplayedHistory:
     @property
     def feasible(self) -> bool:
         """Whether the history meets the terminal condition to the standard, inside windows and peak."""
-        return (
-            self.terminal_excess <= TERMINAL_STANDARD
-            and self.outside_torque == 0.0
-            and self.effort_excess <= 1e-9
-        )
+        return not self.faults
+
+    @property
+    def faults(self) -> list[str]:
+        """What the history fails in, in words; empty if it is feasible."""
+        found = []
+        if not self.terminal_excess <= self.standard:
+            found.append(
+                f"the terminal condition is missed by {self.terminal_excess:.1e} rad "
+                f"(standard {self.standard:.0e})"
+            )
+        if self.outside_torque != 0.0:
+            found.append(f"there is torque outside the windows, {self.outside_torque:.1e} N m")
+        if not self.effort_excess <= 1e-9:
+            found.append(f"the torque needs {self.effort_excess:.1e} more than the stated peak")
+        return found
 
 
 def replay(problem: TransferProblem, history: TorqueHistory) -> ReplayedHistory:
@@ -115,6 +136,7 @@ def replay(problem: TransferProblem, history: TorqueHistory) -> ReplayedHistory:
         outside_torque=float(np.abs(history.base_torque[closed]).max(initial=0.0)),
         effort_excess=float(peak_needed / peak - 1.0) if history.peak > 0 else float(peak_needed),
         evaluations=evaluations,
+        standard=min(TERMINAL_STANDARD, TERMINAL_SHARE * way_to_go(problem)) or TERMINAL_STANDARD,
     )
 
 
@@ -154,6 +176,7 @@ def _integrate(
     keep, (state, torque, out, run) = rate_function(problem)
     states = [np.r_[problem.unit_attitude, problem.start_rate]]
     evaluations, sampled = 0, [np.zeros((0, 7))]
+    atol = 1e-14 * min(1.0, way_to_go(problem) or 1.0)
     for k, base in enumerate(history.base_torque):
         window = _window_function(pieces[k])
 
@@ -165,7 +188,7 @@ def _integrate(
 
         span = (float(history.edges[k]), float(history.edges[k + 1]))
         dense = grids is not None
-        part = solve_ivp(field, span, states[-1], method="DOP853", rtol=1e-12, atol=1e-14, dense_output=dense)
+        part = solve_ivp(field, span, states[-1], method="DOP853", rtol=1e-12, atol=atol, dense_output=dense)
         states.append(part.y[:, -1])
         evaluations += int(part.nfev)
         if grids is not None:

@@ -27,6 +27,7 @@ from .finish import Finish
 from .guess import bend, control_at
 from .minimum_peak import minimum_peak, until_last_window
 from .options import MultiStart, Refinement
+from .resolution import resolved
 from .result import PeakAnswer, Search, Standing, Start
 
 
@@ -138,7 +139,7 @@ def _search(
     problem: TransferProblem, within: list[PeakAnswer], solver: _ForImpulse, search: MultiStart
 ) -> tuple[list[LocalAnswer], Search]:
     """Solve from every start; the feasible answers, cheapest first, and the record of all."""
-    scaled = scale(until_last_window(problem))
+    scaled = scale(resolved(until_last_window(problem)))
     answers: list[LocalAnswer] = []
     starts: list[Start] = []
     for sign, seed, shooting, control in _starts(scaled, within, solver.limit, search):

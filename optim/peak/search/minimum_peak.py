@@ -20,16 +20,17 @@ from .explain import arrives_by_itself, explain, missing_direction
 from .finish import Finish
 from .guess import bend, control_at, first_guess
 from .options import LocalSolver, MultiStart, Refinement
+from .resolution import resolved
 from .result import PeakAnswer, Search, Standing, Start
 
 
 def coarse_mesh(problem: TransferProblem, cells: int) -> Mesh:
     """Mesh with about `cells` open cells, none of them or of the arcs turning far."""
-    inertias = problem.body.principal_inertias
-    wobble = float(inertias[-1] / inertias[0])
-    tumbling = float(np.linalg.norm(problem.start_rate))
+    # torque-free motion keeps the energy, so that a flat body turns no faster than this
+    energy = float(problem.start_rate @ problem.start_momentum)
+    tumbling = math.sqrt(energy / float(problem.body.principal_inertias[0]))
     moving = float(problem.horizon) if tumbling else float(problem.horizon - problem.open_pieces[0].start)
-    rate = 1.5 * wobble * tumbling + 3.0 * problem.angle / moving
+    rate = 1.5 * tumbling + 3.0 * problem.angle / moving
     each = max(2, math.ceil(cells / max(len(problem.open_pieces), 1)))
     parts = []
     for piece in problem.window.pieces:
@@ -86,7 +87,16 @@ def minimum_peak(
         return without_history(problem, standing, nothing.reason, nothing.next_step)
     if arrives_by_itself(problem):
         return at_rest_already(problem)
-    active = until_last_window(problem)
+    active = resolved(until_last_window(problem))
+    if not active.open_pieces:
+        shortest = float(min(piece.length for piece in problem.open_pieces))
+        return without_history(
+            problem,
+            Standing.UNDECIDED,
+            f"double precision does not resolve a window of {shortest:.1g} s "
+            f"within tf = {float(active.horizon):g} s",
+            "let the run start and end nearer to the windows",
+        )
     scaled = scale(active)
     mesh = coarse_mesh(active, refinement.cells)
     candidates, record = _search(scaled, mesh, fast, search, near)
@@ -150,7 +160,11 @@ def _search(
     answers: list[LocalAnswer] = []
     starts: list[Start] = []
     for sign, seed, control in _starts(scaled, mesh, search, near):
-        answer = solver.solve(Shooting(scaled, mesh, sign), control, tolerance=search.tolerance)
+        shooting = Shooting(scaled, mesh, sign)
+        if not np.isfinite(shooting.fly(control).residual).all():
+            starts.append(Start(sign=sign, seed=seed, peak=math.inf, converged=False, iterations=0))
+            continue
+        answer = solver.solve(shooting, control, tolerance=search.tolerance)
         usable = answer.violation <= 1e-4
         starts.append(
             Start(

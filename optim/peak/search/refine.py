@@ -17,6 +17,8 @@ from ..solvers.scp import LocalAnswer
 from ..transcription.mesh import split
 from ..transcription.shooting import Shooting
 
+MIN_CUT = 1e-11
+"""Shorter cells are not cut: their parts would be a few digits long."""
 MAX_CUT = 6
 """A cell is cut into at most this many parts in one round: the estimate is local."""
 BRACKET = 0.05
@@ -41,7 +43,7 @@ def _parts(sigma: SwitchingFunction, target: float) -> NDArray[np.int64]:
 
 def _cuts(sigma: SwitchingFunction, cell: int, parts: int, target: float) -> list[float]:
     """Where to cut one cell; nowhere if it loses less than its fair share."""
-    if parts < 2 or sigma.loss[cell] < 0.05 * target / len(sigma.loss):
+    if parts < 2 or sigma.length[cell] < MIN_CUT or sigma.loss[cell] < 0.05 * target / len(sigma.loss):
         return []
     switches = [s for s in switch_points(sigma, cell) if 1e-3 < s < 1 - 1e-3]
     norm = sigma.answer.shooting.scaled.problem.norm

@@ -60,6 +60,8 @@ def lagrangian_curvature(
     cells = hessian.reshape(10, mesh.size, 10).transpose(1, 0, 2)
     flat = stacked.reshape(-1, d)
     reduced = flat.T @ np.matmul(cells, stacked).reshape(-1, d)
+    if not np.isfinite(reduced).all():
+        return Curvature(np.zeros((0, shooting.cells * m)), np.zeros(0))
     values, vectors = np.linalg.eigh((reduced + reduced.T) / 2)
     keep = np.flatnonzero(values > max(1e-4 * float(np.abs(values).max(initial=0.0)), 1e-12))[-RANK:]
     rows = np.zeros((len(keep), shooting.cells, m))

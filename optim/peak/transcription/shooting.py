@@ -100,6 +100,7 @@ class Shooting:
         share = self.mesh.impulse[self.mesh.open]
         return np.asarray(share / share.sum())
 
+    @np.errstate(over="ignore", invalid="ignore")  # a wild trial may leave the numbers; it is refused
     def fly(self, control: Array) -> Rollout:
         """Trajectory of a control (one-sided thrust is clipped at zero)."""
         if isinstance(self.scaled.problem.norm, ThrusterAxes):
@@ -109,6 +110,7 @@ class Shooting:
         states = self.propagator.states(torque)
         return Rollout(control, torque, states, residual(states[-1], self.sign))
 
+    @np.errstate(over="ignore", invalid="ignore")
     def sensitivity(self, trajectory: Rollout) -> Sensitivity:
         """Derivative of the terminal residual, by one sweep backwards over the cells."""
         A, B = self.propagator.derivatives(trajectory.states, trajectory.torque)
