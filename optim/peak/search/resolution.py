@@ -73,7 +73,8 @@ def _part(piece: Piece, start: Fraction, end: Fraction) -> Coefficients:
 
 def _joined(parts: list[tuple[Fraction, Coefficients]]) -> PiecewisePolynomial:
     """Profile of consecutive (end, shape) from 0, neighbouring closed pieces made one."""
-    knots, shapes = [Fraction(0)], []
+    knots: list[Fraction] = [Fraction(0)]
+    shapes: list[Coefficients] = []
     for end, shape in parts:
         if shapes and shape == ZERO and shapes[-1] == ZERO:
             knots[-1] = end
