@@ -32,7 +32,8 @@ def test_a_turn_about_an_axis_with_both_jets_is_found():
     assert answer.peak <= 4 * 3 * 0.6981317007977318 / 20**2 * (1 + 1e-6)  # bang-bang about x alone
 
 
-def test_a_set_that_cannot_turn_back_is_undecided_with_the_direction():
+@pytest.mark.slow
+def test_a_set_that_pushes_both_ways_about_one_axis_alone_may_still_turn_about_another():
     answer = solve((0, 0, 1), 40, thrusters=((0, 0, 1), (0, 1, 0), (1, 0, 0), (-1, 0, 0)))
-    assert answer.standing is Standing.UNDECIDED
-    assert "cannot push along" in answer.reason
+    assert answer.standing is Standing.CHECKED
+    assert (answer.history.control >= 0).all()

@@ -57,7 +57,7 @@ def checked(
         faults.append(
             f"finer cells would still gain {sigma.total_loss:.1e} (asked for {refinement.mesh_gap:.0e})"
         )
-    if not mesh_gap <= refinement.mesh_gap:
+    elif not mesh_gap <= refinement.mesh_gap:
         faults.append(
             f"double precision resolves the windows so little within tf = {float(problem.horizon):g} s "
             f"that {rounding:.1e} of the peak is open (asked for {refinement.mesh_gap:.0e}): "
