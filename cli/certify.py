@@ -9,14 +9,20 @@ from typing import Annotated
 import typer
 
 from .exit_codes import ExitCode
-from .options import Debug, ScenarioFile
+from .options import Debug, InputError
 
 
 def run(
-    scenario: ScenarioFile,
+    scenario: Annotated[
+        Path | None, typer.Argument(metavar="SCENARIO.toml", help="Scenario file.", show_default=False)
+    ] = None,
     output: Annotated[
-        Path, typer.Option("--output", "-o", metavar="FILE", help="Certificate file to write (JSON).")
-    ],
+        Path | None, typer.Option("--output", "-o", metavar="FILE", help="Certificate file to write (JSON).")
+    ] = None,
+    checker: Annotated[
+        Path | None,
+        typer.Option("--checker", metavar="FILE.pyz", help="Write the stand-alone checker as one file."),
+    ] = None,
     bound: Annotated[
         bool,
         typer.Option("--bound", help="Certify the lower bound of the [optimum] table's least peak too."),
@@ -28,9 +34,19 @@ def run(
     The lower bound of the least peak takes longer than all the rest, and is written on demand.
 
     The file can be checked with `intermit recheck FILE`, or by the checker alone, which needs
-    nothing but Python: python -I -S checker.py FILE.
+    nothing but Python: python -I -S checker.pyz FILE, as --checker writes it.
     """
     del debug
+    if checker is not None:
+        from ..verify.certificates.checker_archive import checker_archive
+
+        checker.write_bytes(checker_archive())
+        typer.echo(f"the checker in {checker}: python -I -S {checker} FILE")
+        if scenario is None and output is None:
+            return ExitCode.HOLDS
+    if scenario is None or output is None:
+        missing = "SCENARIO.toml" if scenario is None else "--output FILE"
+        raise InputError(f"certify: {missing} is missing: intermit certify SCENARIO.toml -o FILE")
     from ..scenario import load_scenario
     from ..study.certify.run import certify
     from ..study.optimum.lower_bounds import asks_for_optimum

@@ -181,7 +181,7 @@ def recheck_words(name: str, optimum: Optimum) -> str:
     assert optimum.bound is not None
     return (
         f"To prove the bound anew: intermit optimum {name} --norm {optimum.key} --certificate FILE, then "
-        "intermit recheck FILE, or the stand-alone checker: python -I -S checker.py FILE."
+        "intermit recheck FILE, or the stand-alone checker: python -I -S checker.pyz FILE."
     )
 
 

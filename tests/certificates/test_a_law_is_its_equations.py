@@ -161,7 +161,7 @@ def test_a_patched_object_is_another_law_though_it_calls_itself_equal():
     twin = child(
         PERSISTENCE, __eq__=lambda *_: True, __hash__=lambda _: hash(PERSISTENCE), control=lambda *_: None
     )
-    with pytest.raises(AttributeError):
+    with pytest.raises(TypeError, match="must return a Control"):
         close_loop(twin)
     jumping = replace(PERSISTENCE)
     object.__setattr__(jumping, "reset_instants", lambda *_: (F(1),))

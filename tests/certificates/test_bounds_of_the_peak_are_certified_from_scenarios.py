@@ -5,6 +5,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
 
 import pytest
 from intermit.cli.app import run
@@ -65,7 +66,7 @@ def test_the_file_holds_the_bound_and_stands_alone(certified, capsys):
     words = capsys.readouterr().out
     assert "VALID  peak-lower-bound" in words
     assert "EQUAL" in words
-    command = [sys.executable, "-I", "-S", checker.__file__, str(file)]
+    command = [sys.executable, "-I", "-S", str(Path(checker.__file__).parent), str(file)]
     assert subprocess.run(command, capture_output=True, check=False).returncode == 0
 
 

@@ -54,7 +54,7 @@ def test_what_certify_writes_is_accepted(certified, capsys):
     assert "VALID  lyapunov-derivative" in words
     assert "INVALID" not in words
     assert "EQUAL" in words
-    command = [sys.executable, "-I", "-S", checker.__file__, str(file)]
+    command = [sys.executable, "-I", "-S", str(Path(checker.__file__).parent), str(file)]
     assert subprocess.run(command, capture_output=True, check=False).returncode == 0
 
 

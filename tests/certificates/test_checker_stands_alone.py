@@ -8,12 +8,17 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
+from intermit.cli.app import run
 from intermit.models.rigid_body import RigidBody
 from intermit.verify import checker
 from intermit.verify.certificates import Certificate, certificate_text, exact_text
+from intermit.verify.certificates.checker_archive import checker_archive
 from intermit.verify.lyapunov.conditions import sharp_certificate
 
 J1 = [["3.05", "0.14", "0.05"], ["0.14", "2.66", "0.12"], ["0.05", "0.12", "2.18"]]
+
+
+FOLDER = Path(checker.__file__).parent
 
 
 def sharp(lam: str = "0.525", weight: str = "1") -> str:
@@ -31,29 +36,57 @@ def edited(text: str, edit) -> str:
 def test_runs_isolated_and_without_site(tmp_path):
     file = tmp_path / "c.json"
     file.write_text(sharp())
-    command = [sys.executable, "-I", "-S", checker.__file__, str(file)]
-    run = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert run.returncode == 0, run.stdout + run.stderr
-    assert "VALID  sharp-condition" in run.stdout
-    assert "1 of 1 valid" in run.stdout
+    command = [sys.executable, "-I", "-S", str(FOLDER), str(file)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "VALID  sharp-condition" in done.stdout
+    assert "1 of 1 valid" in done.stdout
     file.write_text(sharp("0.34"))
-    run = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert run.returncode == 1
-    assert "INVALID  sharp-condition" in run.stdout
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert "INVALID  sharp-condition" in done.stdout
     command[-1] = str(tmp_path / "absent.json")
     assert subprocess.run(command, capture_output=True, check=False).returncode == 2
 
 
-def test_imports_only_the_standard_library():
-    tree = ast.parse(Path(checker.__file__).read_text(encoding="utf-8"))
+def test_imports_only_the_standard_library_and_itself():
     names = set()
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Import):
-            names |= {alias.name.split(".")[0] for alias in node.names}
-        elif isinstance(node, ast.ImportFrom):
-            assert node.level == 0
-            names.add(str(node.module).split(".")[0])
+    for path in FOLDER.glob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import):
+                names |= {alias.name.split(".")[0] for alias in node.names}
+            elif isinstance(node, ast.ImportFrom) and node.level == 0:
+                names.add(str(node.module).split(".")[0])
+            elif isinstance(node, ast.ImportFrom):
+                assert node.level == 1, f"{path.name} reaches out of the checker"
     assert names <= set(sys.stdlib_module_names)
+
+
+def test_no_file_of_it_hides_a_module_of_python():
+    """As a folder that is run, its files come first in the path."""
+    assert not {path.stem for path in FOLDER.glob("*.py")} & set(sys.stdlib_module_names) - {"__main__"}
+
+
+def test_it_can_be_read_in_parts():
+    lines = {path.stem: path.read_text(encoding="utf-8").count("\n") for path in FOLDER.glob("*.py")}
+    kernel = ("exact_numbers", "reading", "matrices", "polynomials", "bernstein")
+    assert sum(lines[name] for name in kernel) <= 700
+    assert max(lines.values()) <= 400
+
+
+def test_it_runs_as_one_file_away_from_the_package(tmp_path, capsys):
+    archive, file = tmp_path / "checker.pyz", tmp_path / "c.json"
+    assert run(["certify", "--checker", str(archive)]) == 0
+    assert "checker.pyz" in capsys.readouterr().out
+    for lam, code, word in (("0.525", 0, "VALID  sharp"), ("0.34", 1, "INVALID  sharp")):
+        file.write_text(sharp(lam))
+        command = [sys.executable, "-I", "-S", str(archive), str(file)]
+        done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path)
+        assert done.returncode == code, done.stderr
+        assert word in done.stdout
+    assert checker_archive() == archive.read_bytes(), "the same sources make the same bytes"
+    assert run(["certify", "-o", str(file)]) == 2
+    assert "SCENARIO.toml is missing" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

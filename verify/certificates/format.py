@@ -2,7 +2,7 @@
 
 A file has parts; a part has `data`, what its claims speak about, and a list of certificates,
 each with its kind, its claim and the witness that makes checking it plain algebra.
-The checker (`verify/checker.py`) reads every field or refuses the file.
+The checker (`verify/checker`) reads every field or refuses the file.
 """
 
 from __future__ import annotations

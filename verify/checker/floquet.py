@@ -1,0 +1,136 @@
+"""Kind floquet: multipliers of a periodic linear plant."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import pairwise
+from operator import mul
+
+from .bernstein import Form, power_coefficients
+from .exact_numbers import MAX_COUNT, Matrix, require, show
+from .kinds import kind
+from .matrices import is_positive_definite, is_symmetric, matrix_product, norm, show_matrix
+from .reading import Node
+from .schedules import Profile, describe_profile, read_profile
+
+TERMS = 30
+GRID = 2**128
+"""Entries are multiples of 1/GRID; what is rounded away enters the radius."""
+
+Grid = list[list[int]]
+
+
+def grid_product(A: Grid, B: Grid) -> Grid:
+    """Return the product of two matrices of multiples of 1/GRID, rounded down: off by < 1/GRID an entry."""
+    columns = list(zip(*B, strict=True))
+    return [[sum(map(mul, row, column)) // GRID for column in columns] for row in A]
+
+
+def monodromy(A: Matrix, F: Matrix, profile: Profile) -> tuple[Matrix, Fraction]:
+    """Enclose the matrix that takes x(0) to x(T) for x' = (A - g(t) F) x: a centre and a radius.
+
+    The radius bounds the largest row sum of the error. Each piece of g is cut so that the Taylor
+    series of the transition matrix converges fast; its tail is bounded by a majorant.
+    """
+    n = len(A)
+    centre = [[GRID * (i == j) for j in range(n)] for i in range(n)]
+    radius = Fraction(0)
+    for start, stop in pairwise(profile.knots):
+        size = (stop - start) * (norm(A) + norm(F))
+        count = 1
+        require(size < 10**5, "a piece of the schedule is too long for its plant")
+        while count < 2 * size:
+            count *= 2
+        for i in range(count):
+            a, b = (start + (stop - start) * Fraction(j, count) for j in (i, i + 1))
+            step, error = transition(A, F, profile.gain(a, b), b - a)
+            radius = grid_norm(step) * radius + error * (grid_norm(centre) + radius) + Fraction(n, GRID)
+            radius = Fraction(int(radius * GRID) + 1, GRID)
+            centre = grid_product(step, centre)
+    return [[Fraction(x, GRID) for x in row] for row in centre], radius
+
+
+def grid_norm(A: Grid) -> Fraction:
+    """Largest row sum of absolute values."""
+    return Fraction(max(sum(map(abs, row)) for row in A), GRID)
+
+
+def transition(A: Matrix, F: Matrix, gain: Form, h: Fraction) -> tuple[Grid, Fraction]:
+    """Enclose the transition matrix over one step: Taylor terms X_k of X' = sum_j M_j x^j X, 0 <= x <= 1.
+
+    (k + 1) X_{k+1} = sum_j M_j X_{k-j}, in multiples of 1/GRID. With m_j >= |M_j| the terms of
+    exp(sum m_j x^(j+1)/(j+1)) dominate |X_k|; an error e put into one term, or into M, moves the
+    sum by at most e exp(2 sum m_j); at x = 4 the same series bounds the tail left out.
+    """
+    n, powers = len(A), power_coefficients(gain)
+    M: list[Grid] = []
+    for j, g in enumerate(powers):
+        exact_rows = [[(A[r][c] if j == 0 else 0) - g * F[r][c] for c in range(n)] for r in range(n)]
+        M.append([[round(h * x * GRID) for x in row] for row in exact_rows])
+    term = [[GRID * (i == j) for j in range(n)] for i in range(n)]
+    terms, total_ = [term], term
+    for k in range(TERMS):
+        rows = [[0] * n for _ in range(n)]
+        for j in range(min(k, len(M) - 1) + 1):
+            columns = list(zip(*terms[k - j], strict=True))
+            rows = [
+                [x + sum(map(mul, row, column)) for x, column in zip(known, columns, strict=True)]
+                for known, row in zip(rows, M[j], strict=True)
+            ]
+        term = [[x // (GRID * (k + 1)) for x in row] for row in rows]
+        terms.append(term)
+        total_ = [[x + y for x, y in zip(*pair, strict=True)] for pair in zip(total_, term, strict=True)]
+    sizes = [grid_norm(m) + Fraction(n, GRID) for m in M]
+    moved = 3 ** (int(2 * sum(sizes, Fraction(0))) + 1)
+    reach = sum((m * Fraction(4) ** (j + 1) / (j + 1) for j, m in enumerate(sizes)), Fraction(0))
+    error = Fraction(n * (TERMS + len(M)), GRID) * moved + Fraction(3 ** (int(reach) + 1), 4 ** (TERMS + 1))
+    return total_, error
+
+
+@kind("floquet")
+def check_floquet(data: Node, certificate: Node) -> list[str]:
+    """Bound the spectral radius of a periodic linear plant's monodromy matrix M, on one side.
+
+    Below r: P > 0 with M'PM < r^2 P. Above r: x'Px > 0 for some x, and M'PM > r^2 P, so that
+    V = x'Px grows by more than r^2 a period. Both with room for the enclosure's radius.
+    """
+    plant, claim, witness = data["plant"], certificate["claim"], certificate["witness"]
+    A, B, K = (plant[name].matrix() for name in ("A", "B", "K"))
+    n = len(A)
+    require(n <= MAX_COUNT, "the plant has too many states")
+    fits = len(A[0]) == n and len(B) == n and len(K) == len(B[0]) and len(K[0]) == n
+    require(fits, "A, B and K do not fit each other")
+    profile = read_profile(data)
+    require(profile.period is not None, "Floquet multipliers need a periodic schedule")
+    M, radius = monodromy(A, matrix_product(B, K), profile)
+    side, r = claim["side"].text(), claim["radius"].number()
+    require_change(M, radius, side, r, witness)
+    fate = " (stable)" if side == "below" and r <= 1 else " (unstable)" if side == "above" and r >= 1 else ""
+    return [
+        f"every Floquet multiplier is below {show(r)} in modulus{fate}"
+        if side == "below"
+        else f"some Floquet multiplier is above {show(r)} in modulus{fate}",
+        f"for x' = (A - g(t) B K) x, A = {show_matrix(A)}, B = {show_matrix(B)}, K = {show_matrix(K)},",
+        describe_profile(profile),
+    ]
+
+
+def require_change(M: Matrix, radius: Fraction, side: str, r: Fraction, witness: Node) -> None:
+    """Check that V = x'Px falls below r^2 V, or grows above it, from x to M x, M known to `radius`."""
+    n, P = len(M), witness["P"].matrix(len(M), len(M))
+    require(is_symmetric(P), "P is not symmetric")
+    require(side in ("below", "above") and r > 0, "a spectral radius lies below or above a positive number")
+    error = n * radius
+    room = (2 * n * norm(M) * error + error**2) * norm(P)
+    grown = matrix_product([list(c) for c in zip(*M, strict=True)], matrix_product(P, M))
+    sign = 1 if side == "below" else -1
+    gap = [
+        [sign * (r * r * P[i][j] - grown[i][j]) - (room if i == j else 0) for j in range(n)] for i in range(n)
+    ]
+    require(is_positive_definite(gap), "P does not change by more than r^2 in a period")
+    if side == "below":
+        require(is_positive_definite(P), "P is not positive definite")
+    else:
+        x = witness["x"].vector(n)
+        value = sum((x[i] * P[i][j] * x[j] for i in range(n) for j in range(n)), Fraction(0))
+        require(value > 0, "x'Px is not positive")
