@@ -81,7 +81,7 @@ def test_the_same_equations_in_other_words_keep_it(parent, change):
     assert compared_law(with_control(parent, change)) == compared_law(parent)
 
 
-def test_what_a_law_says_of_its_parameters_counts_only_in_its_equations():
+def test_what_a_law_says_of_itself_is_no_evidence():
     lying = child(PERSISTENCE, parameters=property(lambda _: {"lambda": F(3), "R0": F(1)}))
     assert compared_law(lying).decay == 3, "the loop runs with what `parameters` says"
     unused = child(PERSISTENCE, parameters=property(lambda self: {"lambda": self.lambda_, "R0": F(99)}))
@@ -104,7 +104,7 @@ def test_what_a_law_says_of_its_parameters_counts_only_in_its_equations():
             )
 
 
-def test_numbers_are_read_off_the_equations_whatever_they_are_called():
+def test_numbers_are_read_off_the_equations():
     @dataclass(frozen=True)
     class Renamed(Law):
         name: ClassVar[str] = "adaptive-scaling"
@@ -146,7 +146,7 @@ def test_states_that_jump_or_are_more_than_known_lose_the_proof():
         compared_law(child(PERSISTENCE, control=control, controller_states=names))
 
 
-def test_a_patched_object_is_another_law_though_it_calls_itself_equal():
+def test_a_patched_object_is_another_law():
     close_loop(PERSISTENCE)
     patched = replace(PERSISTENCE)
 

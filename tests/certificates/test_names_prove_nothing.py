@@ -155,7 +155,7 @@ class Sawn(Adaptive):
         return (ControllerState("R", self.R0, "s"), ControllerState("k", self.more, "1/s"))
 
 
-def test_a_state_starts_where_it_starts_whatever_the_parameters_say():
+def test_a_state_starts_where_it_starts():
     at = (ADAPTIVE.lambda_, ADAPTIVE.gamma, ADAPTIVE.R0, ADAPTIVE.k0, ADAPTIVE.a)
     assert compared_law(Sawn(*at, more=ADAPTIVE.k0)) == compared_law(ADAPTIVE)
     assert compared_law(Sawn(*at, more=ADAPTIVE.k0 + 1)).initial_gain == ADAPTIVE.k0 + 1
