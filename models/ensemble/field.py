@@ -12,6 +12,7 @@ import numpy as np
 from ..closed_loop import ClosedLoop, Saturation, close_loop
 from ..laws import Law
 from ..lowering import ArrayFunction, shared, walk
+from ..lowering.jumps import jumps
 from ..simulation.phases import Phase, phase_arguments
 from ..types import Array
 from .step import Index, Mask
@@ -93,6 +94,11 @@ class StackedField:
             lowered_field(structure, degree, uniform, coasting=coasting) for coasting in (False, True)
         ]
         self._origin = 0.0
+
+    @property
+    def jumps(self) -> bool:
+        """Whether the right-hand side jumps anywhere."""
+        return any(jumps(function.program) for function in self._functions)
 
     def enter(self, phase: Phase, runs: Index) -> None:
         """Take the signals of a phase and the given runs."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import final
 
@@ -19,6 +19,8 @@ from .steps import Stack, Tolerances
 
 STACK = 1024
 """Runs a stack: enough to drown numpy's overhead, few enough for the second-level cache."""
+JUMPING_EVALUATIONS = 20_000
+"""Right-hand sides of one phase after which a run of a law that jumps counts as chattering."""
 
 
 @final
@@ -43,9 +45,12 @@ def integrate_stack(
 ) -> Ends:
     """Carry all runs through the phases; none ever steps across a phase's end.
 
-    A run whose state leaves the numbers, or whose step shrinks to nothing, stops alone.
+    A run whose state leaves the numbers, or whose step shrinks to nothing, stops alone. So does a
+    run of a law that jumps, where it chatters: no integrator gets past a surface that it slides along.
     """
     field = StackedField(runs.structure, runs.parameters, runs.body, degree=signal_degree(phases))
+    if tolerances.phase_evaluations is None and field.jumps:
+        tolerances = replace(tolerances, phase_evaluations=JUMPING_EVALUATIONS)
     ends = Ends(np.array(runs.states), np.full(runs.count, np.nan), np.zeros(runs.count, dtype=np.int64))
     with np.errstate(all="ignore"):
         for number, phase in enumerate(phases):

@@ -12,10 +12,12 @@ from numpy.typing import ArrayLike
 
 from ..closed_loop import ClosedLoop, Saturation, body_values, close_loop
 from ..laws import Law
+from ..lowering import UnknownOperationError
 from ..rigid_body import RigidBody
 from ..schedule import Schedule
 from ..types import Array
 from .phases import Phase, phase_field, phases_between, signal_degree
+from .switching import SlidingError, Switching, jumping_functions
 from .trajectory import Segment, Trajectory
 
 
@@ -72,7 +74,8 @@ def simulate(
     ValueError
         If the quaternion is not unit to 1e-9 or the horizon is not after the start.
     SimulationError
-        If the state leaves the numbers (an unstable law may) or the step size vanishes.
+        If the state leaves the numbers (an unstable law may), the step size vanishes, or a law that
+        jumps would slide along a switching surface or switches without end.
     """
     q = np.asarray(quaternion, dtype=float)
     if q.shape != (4,) or abs(np.linalg.norm(q) - 1) > 1e-9:
@@ -86,14 +89,31 @@ def simulate(
     method = method if method is not None else DOP853()
     field = _RightHandSide(loop, body, degree)
     reset = _reset_map(loop)
-    segments = []
+    try:
+        functions = jumping_functions(loop, degree)
+    except UnknownOperationError as unknown:
+        raise SimulationError(f"the law jumps, and its switches cannot be located: {unknown}") from None
+    switching = None
+    if functions is not None:
+        switching = Switching(functions, degree, loop.parameter_values(), body_values(body))
+    segments: list[Segment] = []
     for phase in phases:
         if phase.resets:
             state = reset(state, loop.parameter_values(), body_values(body))
-        segment = _integrate_phase(field, phase, state, method)
-        segments.append(segment)
-        state = segment.end_state
-    return Trajectory(loop, body, schedule, tuple(segments), field.count)
+        if switching is None:
+            segments.append(_integrate_phase(field, phase, state, method))
+        else:
+            segments += _integrate_switching(switching, phase, state, method)
+        state = segments[-1].end_state
+    count = field.count if switching is None else switching.evaluations
+    return Trajectory(loop, body, schedule, tuple(segments), count)
+
+
+def _integrate_switching(switching: Switching, phase: Phase, state: Array, method: DOP853) -> list[Segment]:
+    try:
+        return switching.through(phase, state, method.rtol, method.atol)
+    except (SlidingError, FloatingPointError) as stopped:
+        raise SimulationError(str(stopped)) from None
 
 
 class _RightHandSide:
