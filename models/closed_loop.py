@@ -191,6 +191,8 @@ def _close_loop(law: Law, saturation: Saturation | None, identity: tuple[object,
     time = _time_symbols(law)
     control = law.control(plant, time, states, parameters)
     _check_control(law, control, states)
+    again = law.control(plant, time, states, parameters)
+    _check_control(law, again, states)
     torque = time.g * control.torque
     torque = saturation.apply(torque) if saturation is not None else torque
     Jw_rate = momentum_rate(J, w, torque)
@@ -214,7 +216,24 @@ def _close_loop(law: Law, saturation: Saturation | None, identity: tuple[object,
     )
     if strays := loop.strays(loop.state_rate):
         raise ValueError(f"law {law.name} uses the symbol {strays[0]}, which is none of those it was given")
+    _check_repeatable(loop, again)
     return loop
+
+
+def _check_repeatable(loop: ClosedLoop, again: Control) -> None:
+    """Refuse a law that returns something else when it is asked again: a run would not be what was proved."""
+    law, names = loop.law, list(loop.controller_states)
+    both = [ca.veccat(c.torque, *(c.state_rates[name] for name in names)) for c in (loop.control, again)]
+    if strays := loop.strays(both[1]):
+        raise ValueError(f"law {law.name} uses the symbol {strays[0]}, which is none of those it was given")
+    sizes = [argument.numel() for argument in loop.arguments]
+    values = [np.array([0.3 + (0.37 + 0.618 * i) % 1 for i in range(size)]) for size in sizes]
+    first, second = (np.array(x) for x in loop.function("twice", *both)(*values))
+    if not np.array_equal(first, second, equal_nan=True):
+        raise ValueError(
+            f"law {law.name} returns another torque or rate when it is asked again: control must depend "
+            "on its arguments alone (no counters, no random numbers)"
+        )
 
 
 def _symmetric(entries: Expression) -> Expression:
@@ -240,6 +259,13 @@ def _check_names(law: Law) -> None:
     twice = next((name for i, name in enumerate(names) if name in names[:i]), None)
     if twice is not None:
         raise ValueError(f"law {law.name}: two of its states, signals and parameters are called {twice!r}")
+    stated: Mapping[str, object] = law.parameters  # a class of the user's may return anything
+    for name, value in stated.items():
+        if isinstance(value, bool) or not isinstance(value, (int, Fraction)):
+            raise TypeError(
+                f"law {law.name}: parameter {name} must be exact, an int or a Fraction, received {value!r} "
+                f"({type(value).__name__})"
+            )
 
 
 def _check_control(law: Law, control: Any, states: Mapping[str, Expression]) -> None:

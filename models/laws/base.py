@@ -62,6 +62,15 @@ class ControllerState:
     initial: Fraction
     unit: str = ""
 
+    def __post_init__(self) -> None:
+        try:
+            object.__setattr__(self, "initial", Fraction(self.initial))
+        except (TypeError, ValueError, OverflowError):
+            raise ValueError(
+                f"controller state {self.name}: expected a finite number to start from, "
+                f"received {self.initial!r}"
+            ) from None
+
 
 @final
 @dataclass(frozen=True, eq=False)

@@ -169,6 +169,31 @@ def test_a_patched_object_is_another_law():
         compared_law(jumping)
 
 
+def test_a_law_that_changes_its_mind_is_refused():
+    asked = []
+
+    def moody(control, *_):
+        asked.append(1)
+        return control if len(asked) % 2 else Control(0 * control.torque, control.state_rates)
+
+    with pytest.raises(ValueError, match="asked again"):
+        close_loop(with_control(PERSISTENCE, moody))
+
+
+@pytest.mark.parametrize("value", [0.6, "0.6", None, True])
+def test_parameters_that_are_not_exact_are_refused(value):
+    law = child(PERSISTENCE, parameters=property(lambda _: {"lambda": value, "R0": F(1)}))
+    with pytest.raises(TypeError, match="lambda must be exact"):
+        close_loop(law)
+
+
+def test_a_state_starts_from_a_finite_number():
+    assert ControllerState("R", 1.5).initial == F(3, 2)
+    for start in (float("nan"), float("inf"), "R0", None):
+        with pytest.raises(ValueError, match="finite number"):
+            ControllerState("R", start)
+
+
 def test_a_class_patched_after_use_is_another_law(monkeypatch):
     assert compared_law(PERSISTENCE).decay == F("0.525")
     original = PersistenceFilter.control
