@@ -112,7 +112,8 @@ def minimum_peak(
     first = finish(candidates[0])
     if first.standing is Standing.CHECKED:
         return first
-    others = (finish(candidate) for candidate in _distinct(candidates)[1:])
+    rest = _distinct(candidates)[1:]
+    others = (finish(candidate) for candidate in rest if not finish.fallback.exhausted)
     second = next((other for other in others if other.standing is Standing.CHECKED), first)
     return second if second is first else _beside(first, second)
 
