@@ -130,17 +130,16 @@ class ThrusterAxes(Norm):
     ----------
     axes : tuple of m triples of Fraction
         Torque for unit force of each thruster, body frame, m (lever arm times direction).
-        They must span the three axes; whether they push both ways along each is
-        `spans_all_directions` (without it some torques cannot be made at all).
+        Whether they push both ways along each body axis is `spans_all_directions`
+        (without it some torques cannot be made at all).
     """
 
     axes: tuple[tuple[Fraction, Fraction, Fraction], ...]
 
     def __post_init__(self) -> None:
-        if len(self.axes) < 3 or np.linalg.matrix_rank(self.control_matrix) < 3:
+        if not self.axes or not self.control_matrix.any():
             raise ValueError(
-                f"thruster axes must span the three body axes: received {len(self.axes)} thrusters of rank "
-                f"{np.linalg.matrix_rank(self.control_matrix) if self.axes else 0}"
+                f"one thruster at least must give a torque: received {len(self.axes)} without any"
             )
 
     @classmethod
@@ -172,6 +171,10 @@ class ThrusterAxes(Norm):
         The set is a zonotope, so each facet normal is a cross product of two axes, either way.
         """
         columns = self.control_matrix.T
+        _, sizes, directions = np.linalg.svd(columns)
+        rank = int((sizes > 1e-12 * sizes[0]).sum())
+        # a flat set has facets along its own plane or line too: cross products with what is normal to it
+        columns = np.vstack([columns, sizes[0] * directions[rank:]])
         found = [np.cross(a, b) for a, b in combinations(columns, 2)]
         lengths = [float(np.linalg.norm(n)) for n in found]
         normals = [n / size for n, size in zip(found, lengths, strict=True) if size > 1e-12 * max(lengths)]

@@ -218,7 +218,7 @@ def norm_of(scenario: Scenario, key: NormKey) -> Norm:
     Raises
     ------
     ScenarioError
-        If thrusters are asked for and the scenario names none, or none that span three axes.
+        If thrusters are asked for and the scenario names none, or none that gives a torque.
     """
     from ...scenario import ScenarioError
 

@@ -18,6 +18,7 @@ from intermit.optim.peak.transcription.scaling import scale
 from intermit.optim.peak.transcription.shooting import Shooting
 from intermit.optim.problem import TransferProblem, quaternion_from_axis_angle
 from problems import UNIT, paper_schedule
+from scipy.optimize import linprog
 
 NO_DOWN = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1]]
 ROUGH = Refinement(mesh_gap=1e-4)
@@ -39,6 +40,40 @@ def test_a_turn_about_an_axis_with_both_jets_needs_no_third(axis, inertia):
     assert answer.flown.feasible
     assert answer.peak <= 4 * inertia * math.radians(30) / 12**2 * (1 + 1e-4)
     assert (answer.history.control >= 0).all()
+
+
+def test_one_pair_alone_turns_about_its_own_axis():
+    """In closed form: 4 A / tf^2 for unit inertia, and there is no other way."""
+    answer = minimum_peak(turn(NO_DOWN[:2], [1, 0, 0], 30), search=MultiStart(starts=1), refinement=ROUGH)
+    assert answer.standing is Standing.CHECKED, answer.reason
+    assert answer.peak == pytest.approx(4 * math.radians(30) / 12**2, rel=1e-6)
+
+
+def test_one_pair_alone_never_turns_about_another_axis():
+    answer = minimum_peak(
+        turn(NO_DOWN[:2], [0, 1, 0], 30), search=MultiStart(starts=1), refinement=Refinement(cells=8)
+    )
+    assert answer.standing is Standing.UNDECIDED
+    assert "cannot push along" in answer.reason
+
+
+@pytest.mark.parametrize("rows", [NO_DOWN[:2], NO_DOWN[:4], [[1, 2, 0], [-3, 1, 0], [0, -1, 0]]])
+def test_the_peak_of_a_flat_set_is_its_least_largest_force(rows):
+    """Against a linear program, for torques that can be made; a torque out of the plane needs infinite force."""
+    norm = ThrusterAxes.from_rows(rows)
+    B, count = norm.control_matrix, len(rows)
+    rng = np.random.default_rng(5)
+    for force in rng.uniform(0, 1, (12, count)):
+        torque = B @ force
+        found = linprog(
+            np.r_[np.zeros(count), 1.0],
+            A_ub=np.c_[np.eye(count), -np.ones(count)],
+            b_ub=np.zeros(count),
+            A_eq=np.c_[B, np.zeros(3)],
+            b_eq=torque,
+        )
+        assert float(norm.peak(torque)) == pytest.approx(found.x[-1], rel=1e-7, abs=1e-9)
+        assert norm.peak(torque + [0, 0, 0.1]) == np.inf
 
 
 def test_no_positive_curvature_is_no_error():

@@ -53,8 +53,8 @@ def test_refusals_name_the_fault():
         TransferProblem.through(SCHEDULE, horizon=8, body=BODY, attitude=(0, 0, 0, 0))
     with pytest.raises(ValueError, match=r"in \[0, 1\)"):
         Terminal(attitude=Fraction(2))
-    with pytest.raises(ValueError, match="span the three body axes"):
-        ThrusterAxes.from_rows([[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]])
+    with pytest.raises(ValueError, match="must give a torque"):
+        ThrusterAxes.from_rows([[0, 0, 0], [0, 0, 0]])
 
 
 def test_angle_is_that_of_the_attitude_not_of_the_sign():

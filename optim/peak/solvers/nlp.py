@@ -81,7 +81,9 @@ def _landed(shooting: Shooting, trajectory: Rollout) -> Rollout:
             break
         G = shooting.sensitivity(trajectory).flat()[exact]
         weight = np.repeat(1.0 / shooting.weights, trajectory.control.shape[1])
-        change = weight * (G.T @ np.linalg.solve((G * weight) @ G.T, trajectory.residual[exact]))
+        change = weight * (
+            G.T @ np.linalg.lstsq((G * weight) @ G.T, trajectory.residual[exact], rcond=None)[0]
+        )
         trajectory = shooting.fly(trajectory.control - change.reshape(trajectory.control.shape))
     return trajectory
 
