@@ -59,7 +59,7 @@ def test_one_pair_alone_never_turns_about_another_axis():
 
 @pytest.mark.parametrize("rows", [NO_DOWN[:2], NO_DOWN[:4], [[1, 2, 0], [-3, 1, 0], [0, -1, 0]]])
 def test_the_peak_of_a_flat_set_is_its_least_largest_force(rows):
-    """Against a linear program, for torques that can be made; a torque out of the plane needs infinite force."""
+    """Against a linear program; a torque out of the plane is beyond any force."""
     norm = ThrusterAxes.from_rows(rows)
     B, count = norm.control_matrix, len(rows)
     rng = np.random.default_rng(5)
@@ -73,7 +73,7 @@ def test_the_peak_of_a_flat_set_is_its_least_largest_force(rows):
             b_eq=torque,
         )
         assert float(norm.peak(torque)) == pytest.approx(found.x[-1], rel=1e-7, abs=1e-9)
-        assert norm.peak(torque + [0, 0, 0.1]) == np.inf
+        assert norm.peak(torque + np.array([0.0, 0.0, 0.1])) == np.inf
 
 
 def test_no_positive_curvature_is_no_error():
