@@ -45,14 +45,19 @@ def note(text: str) -> None:
 
 @contextmanager
 def progress(title: str) -> Iterator[Step]:
-    """A progress bar on a terminal; nothing in a pipe."""
+    """A progress bar with the time gone and left (estimated) on a terminal; nothing in a pipe."""
     if not sys.stderr.isatty():
         yield _silent
         return
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-    columns = (TextColumn("{task.description}", markup=False), BarColumn(), TimeElapsedColumn())
+    columns = (
+        TextColumn("{task.description}", markup=False),
+        BarColumn(),
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+    )
     bar = Progress(*columns, console=Console(stderr=True), transient=True)
     with bar:
         yield _Bar(bar, bar.add_task(title, total=1.0))

@@ -67,6 +67,17 @@ def _not_negative(value: object) -> Fraction:
     return number
 
 
+def _sine(value: object) -> Fraction:
+    number = _not_negative(value)
+    if number >= 1:
+        raise ValueError(f"must be < 1 (|bv| is the sine of half the angle), received {float(number):g}")
+    return number
+
+
+def _positive_sine(value: object) -> Fraction:
+    return _sine(_positive(value))
+
+
 def _text(value: object) -> str:
     if not isinstance(value, str):
         raise ValueError(f"expected a text in quotes, received {quote(value)}")  # noqa: TRY004  pydantic collects it
@@ -87,6 +98,8 @@ def _seed(value: object) -> int:
 
 Exact = Annotated[Fraction, PlainValidator(exact)]
 Positive = Annotated[Fraction, PlainValidator(_positive)]
+Sine = Annotated[Fraction, PlainValidator(_sine)]
+PositiveSine = Annotated[Fraction, PlainValidator(_positive_sine)]
 NotNegative = Annotated[Fraction, PlainValidator(_not_negative)]
 Text = Annotated[str, PlainValidator(_text)]
 Count = Annotated[int, PlainValidator(_count)]

@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 from pydantic import StrictBool, field_validator
 
-from .exact import Count, Exact, NotNegative, Positive, Seed, Text
+from .exact import Count, Exact, NotNegative, Positive, Seed, Sine, Text
 from .table import Table
 
 Norm = Literal["component", "euclidean"]
@@ -16,6 +16,9 @@ Interval = tuple[Exact, Exact]
 
 MAX_SAMPLES = 2**30
 """Distinct points of the Sobol sequence that is drawn from."""
+
+MAX_STARTS = 1000
+"""Starts of the search for an optimum, each of them a whole search of a second or so."""
 
 
 class CheckTable(Table):
@@ -55,12 +58,21 @@ class OptimumTable(Table):
     final_time: Positive | None = None
     norm: Norm = "component"
     profile: Profile = "window"
-    attitude_tolerance: NotNegative = Fraction(0)
+    attitude_tolerance: Sine = Fraction(0)
     rate_tolerance: NotNegative = Fraction(0)
     thrusters: tuple[tuple[Exact, Exact, Exact], ...] | None = None
     torque_limit: Positive | None = None
     starts: Count = 4
     seed: Seed = 1
+
+    @field_validator("starts")
+    @classmethod
+    def _affordable(cls, value: int) -> int:
+        if value > MAX_STARTS:
+            raise ValueError(
+                f"expected at most {MAX_STARTS} (each start is a whole search), received {value}"
+            )
+        return value
 
 
 class CompareTable(Table):

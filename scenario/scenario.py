@@ -133,7 +133,7 @@ def build_scenario(file: ScenarioFile, document: Document) -> Scenario:
             f"{float(bounds.max_angle_deg):.6g} deg (2 acos b0): the laws unwind it the long way; "
             "the other sign of the quaternion is the same attitude and turns the short way",
         )
-    return Scenario(
+    scenario = Scenario(
         path=document.path,
         name=file.name or document.path.stem,
         description=file.description,
@@ -157,12 +157,37 @@ def build_scenario(file: ScenarioFile, document: Document) -> Scenario:
         warnings=warnings,
         sha256=fingerprint(file, _attachments(file, document, choices)),
     )
+    _require_turns(scenario, document)
+    return scenario
 
 
 MAX_IDLE = Fraction(10**8)
 """Seconds (three years) that a run may go on after a table's end, where nothing acts any more."""
 MAX_OUTPUTS = 10**7
 """Instants at which a run's histories are written, at most."""
+
+
+MAX_TURNS = 8000
+"""Turns of a run at its start rate: each costs some 200 right-hand sides, about 2 ms."""
+
+
+def _require_turns(scenario: Scenario, document: Document) -> None:
+    """Refuse a spin whose turns within the horizon no run can follow.
+
+    Raises
+    ------
+    ScenarioError
+        Naming the start rate.
+    """
+    rate = max(abs(x) for x in scenario.initial.exact_rate)
+    turns = rate * scenario.horizon / Fraction(44, 7)
+    if turns > MAX_TURNS:
+        raise ScenarioError(
+            document.where("initial.rate"),
+            f"{float(rate):g} rad/s for {float(scenario.horizon):g} s (simulation.horizon) is "
+            f"{Decimal(int(turns)):.3g} turns: at most {MAX_TURNS} can be followed; give a smaller rate "
+            "(rad/s) or a shorter horizon",
+        )
 
 
 def _require_reach(file: ScenarioFile, schedule: Schedule, document: Document) -> None:

@@ -11,7 +11,7 @@ from typing import Any, Literal
 
 from pydantic import Field, StrictBool, field_validator
 
-from .exact import Count, Exact, Matrix, NotNegative, Positive, Text, Vector, exact
+from .exact import Count, Exact, Matrix, NotNegative, Positive, PositiveSine, Text, Vector, exact
 from .questions import CheckTable, CompareTable, OptimumTable, ReportTable, StudyTable, TuneTable
 from .table import Table
 
@@ -134,7 +134,7 @@ class LinearTable(Table):
 class ToleranceTable(Table):
     """[tolerance]: settled means |bv| <= `attitude` and |w| <= `rate` (rad/s), Euclidean, for good."""
 
-    attitude: Positive = Fraction(1, 100)
+    attitude: PositiveSine = Fraction(1, 100)
     rate: Positive = Fraction(1, 100)
 
 

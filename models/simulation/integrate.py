@@ -20,6 +20,9 @@ from .phases import Phase, phase_field, phases_between, signal_degree
 from .switching import SlidingError, Switching, jumping_functions
 from .trajectory import Segment, Trajectory
 
+MAX_EVALUATIONS = 2_000_000
+"""Right-hand sides of one run, some 10 microseconds each."""
+
 
 class SimulationError(RuntimeError):
     """A run that could not be carried to its horizon: it says when it stopped and why."""
@@ -144,6 +147,11 @@ class _RightHandSide:
 
         def evaluate(t: float, x: Array) -> Array:
             self.count += 1
+            if self.count > MAX_EVALUATIONS:
+                raise SimulationError(
+                    f"the run stopped at t = {t:.6g} s after {MAX_EVALUATIONS} right-hand sides: its motion "
+                    "is far quicker than its horizon is long; give a shorter horizon, or slower parameters"
+                )
             self._tau[0] = t - origin
             self._state[:] = x
             self._evaluate()

@@ -57,6 +57,8 @@ def _row(scenario: Scenario, choice: Any) -> Row:
         return Row(choice.label, None, {}, str(error))
     if run.figures.settling is None:
         return Row(choice.label, run, {}, f"does not settle by {float(scenario.horizon):g} s")
+    if run.figures.settling <= 0:
+        return Row(choice.label, run, {}, "is within the tolerances from the start: nothing to compare")
     terms: dict[str, EqualTerms] = {norm: on_equal_terms(run, norm) for norm in scenario.compare.norms}
     return Row(choice.label, run, terms)
 
