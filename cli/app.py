@@ -30,7 +30,7 @@ COMMANDS = (
 )
 """Modules of this room that are commands, in the order of the help page; `_` is spelled `-`."""
 
-INPUT_ERRORS = frozenset({"ScenarioError", "RecordError", "FolderError", "CertificateError"})
+INPUT_ERRORS = frozenset({"ScenarioError", "RecordError", "FolderError"})
 """Errors of the rooms below that the user can mend, by name: naming them imports nothing."""
 
 MAX_MESSAGE = 1000

@@ -20,6 +20,7 @@ Sources = Annotated[
 
 
 def run(
+    context: typer.Context,
     sources: Sources,
     out: Annotated[Path, typer.Option("-o", "--out", metavar="DIR", help="Folder of the report.")],
     date: Annotated[str, typer.Option(help="Date on the title page (default: SOURCE_DATE_EPOCH).")] = "",
@@ -51,6 +52,8 @@ def run(
     records = [path for path in sources if path.suffix == ".json" or path.is_dir()]
     if records and len(records) < len(sources):
         raise InputError("give one scenario, one record, or two records; not a scenario beside a record")
+    if records:
+        _refuse_unread(context)
     if len(sources) > 2 or (len(sources) == 2 and not records):
         raise InputError("give one scenario, one record, or two records to compare")
     if len(records) == 2:
@@ -67,6 +70,18 @@ def run(
         )
     note(f"{folder / 'report.html'}: {perf_counter() - began:.1f} s")
     return code
+
+
+def _refuse_unread(context: typer.Context) -> None:
+    """Refuse what only a study reads: from a record nothing is computed again, its title page included."""
+    unread = ("date", "author", "optimum", "compare", "margins", "front", "audit")
+    for name in unread:
+        source = context.get_parameter_source(name)
+        if source is not None and source.name == "COMMANDLINE":
+            raise InputError(
+                f"--{name} is read when a scenario is studied, received beside a record: leave it out, "
+                "or make the report again from the scenario"
+            )
 
 
 def _study(

@@ -282,8 +282,8 @@ def storage_chapter(record: Record) -> Chapter | None:
     charts = []
     for run in runs_of(record):
         for role, words, unit in (
-            ("storage", "Lyapunov function V", ""),
-            ("storage_rate", "Derivative V'", "1/s"),
+            ("storage", "Lyapunov function V", "kg m^2/s"),
+            ("storage_rate", "Derivative V'", "kg m^2/s^2"),
         ):
             values, bound = run.array(role), run.array(f"{role}_bound")
             if values is None:

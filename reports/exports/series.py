@@ -24,6 +24,11 @@ UNITS = {
     "k": "1/s",
     "filter_floor": "s",
     "angle_bound": "rad",
+    "rate_bound": "kg^1/2 m rad/s",
+    "storage": "kg m^2/s",
+    "storage_rate": "kg m^2/s^2",
+    "storage_bound": "kg m^2/s",
+    "storage_rate_bound": "kg m^2/s^2",
     "torque_bound": "N m",
     "gain_rate": "1/s",
 }

@@ -107,7 +107,7 @@ def scenario_entry(scenario: Scenario) -> dict[str, Any]:
     if bounds.max_rate is not None:
         facts.append(_fact("largest rate of the set", _exact("max_rate", bounds.max_rate, "rad/s")))
     if bounds.max_weighted_rate is not None:
-        quantity = _exact("max_weighted_rate", bounds.max_weighted_rate, "kg^1/2 m/s")
+        quantity = _exact("max_weighted_rate", bounds.max_weighted_rate, "kg^1/2 m rad/s")
         facts.append(_fact("largest sqrt(Omega' J Omega) of the set", quantity))
     settled = f"|bv| <= {float(tolerance.attitude):g} and |w| <= {float(tolerance.rate):g} rad/s, for good"
     facts.append(_fact("settled means", text=settled))

@@ -142,7 +142,8 @@ def excitation_claim(schedule: Schedule, length: Fraction | None = None) -> Clai
     """
     T = default_length(schedule) if length is None else length
     result = excitation(schedule, T)
-    key, title = "schedule.excitation", "g is persistently exciting"
+    within = "" if result.periodic else " within the table"
+    key, title = "schedule.excitation", f"g is persistently exciting{within}"
     where = "for ever, since the table repeats" if result.periodic else _finite(schedule)
     statement = f"every interval of {seconds(T)} holds a positive integral of g^2 ({where})"
     evidence = Evidence(
