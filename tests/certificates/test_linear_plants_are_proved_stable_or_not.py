@@ -66,9 +66,60 @@ def test_a_free_oscillator_is_refuted_with_a_growing_direction():
     assert claim.witness.violation.low > 0
 
 
-def test_the_boundary_is_undecided():
-    claim = stability_claim(plant([[0, 1], [-1, 0]], [[0], [0]], [[0, 0]]))
-    assert claim.verdict is Verdict.UNDECIDED
+@pytest.mark.parametrize(
+    ("A", "B", "K"),
+    [
+        ([[0, 1], [-1, 0]], [[0], [0]], [[0, 0]]),  # an oscillator that nothing drives
+        ([[0, 1], [0, 0]], [[0], [1]], [[0, 0]]),  # a double integrator without feedback
+        ([[-1, 0], [0, 0]], [[1], [0]], [[1, 0]]),  # a mode that the thrusters do not reach
+        (
+            [[-1, 0, 0], [0, 0, 2], [0, -2, 0]],
+            [[1], [0], [0]],
+            [[1, 3, 3]],
+        ),  # an oscillation, likewise
+        ([[-1, 0], [5, 0]], [[1], [1]], [[1, 0]]),  # a mode that the feedback does not see
+        ([["1e-12"]], [[1]], [[0]]),
+    ],
+)
+def test_a_multiplier_of_modulus_one_or_more_is_refuted_exactly(A, B, K):
+    claim = stability_claim(LinearPlant.from_rows(A, B, K, paper_schedule()))
+    assert claim.verdict is Verdict.REFUTED
+    certificate = claim.evidence[0].details["certificate"]
+    assert certificate.kind == "floquet-liouville"
+    file = json.loads(certificate_text([certificate]))
+    (entry,) = file["parts"][0]["certificates"]
+    entry["claim"]["growth"] = "1/7"
+    assert not checker.check_text(json.dumps(file))[0].valid
+
+
+@pytest.mark.parametrize("period", [500, 5700])
+def test_a_slow_double_integrator_is_proved_stable(period):
+    """800 kg m^2, a firing of 60 s: multipliers 0.86515 and 0.37526 for a period of 500 s."""
+    schedule = build_schedule([Window(F(100), F(160))], Hermite(), period=F(period))
+    plant = LinearPlant.from_rows([[0, 1], [0, 0]], [[0], ["0.00125"]], [["0.005", 20]], schedule)
+    truth = np.abs(plant.floquet().multipliers).max()
+    claim = stability_claim(plant)
+    assert claim.verdict is (Verdict.PROVED if truth < 1 else Verdict.REFUTED)
+    assert claim.quantities[0].low <= truth <= claim.quantities[0].high
+
+
+def test_random_plants_are_decided_as_their_multipliers_say():
+    rng, decided = np.random.default_rng(5), 0
+    for _ in range(40):
+        n = int(rng.integers(1, 4))
+        scale = 10.0 ** rng.uniform(-3, 2)
+        A = np.round(rng.normal(size=(n, n)) * scale, 6) - np.eye(n) * round(scale * rng.uniform(0, 2), 6)
+        B, K = np.round(rng.normal(size=(n, 1)), 3), np.round(rng.normal(size=(1, n)) * scale, 6)
+        found = plant(A, B, K)
+        claim = stability_claim(found)
+        if claim.verdict is Verdict.UNDECIDED:
+            continue
+        decided += 1
+        with np.errstate(over="ignore"):
+            truth = np.abs(found.floquet().multipliers).max() if scale < 10 else None
+        if truth is not None and abs(truth - 1) > 1e-6:
+            assert (claim.verdict is Verdict.PROVED) == (truth < 1)
+    assert decided >= 30
 
 
 def test_finite_tables_are_undecided():
@@ -78,11 +129,23 @@ def test_finite_tables_are_undecided():
         spectral_radius(plant([[-1]], [[1]], [[0]], finite))
 
 
-def test_a_plant_too_fast_to_enclose_is_undecided():
-    for speed in ("1e3", "1e30"):
-        claim = stability_claim(LinearPlant.from_rows([["-" + speed]], [["1"]], [["0"]], paper_schedule()))
-        assert claim.verdict is Verdict.UNDECIDED
-        assert "steps" in claim.reason
+@pytest.mark.parametrize("speed", ["1e3", "1e4", "1e30"])
+def test_a_stiff_plant_is_proved_without_its_monodromy_matrix(speed):
+    claim = stability_claim(LinearPlant.from_rows([["-" + speed]], [["1"]], [["0"]], paper_schedule()))
+    assert claim.verdict is Verdict.PROVED
+    file = json.loads(certificate_text([claim.evidence[0].details["certificate"]]))
+    assert file["parts"][0]["certificates"][0]["kind"] == "floquet-lyapunov"
+    file["parts"][0]["data"]["plant"]["A"] = [[speed]]
+    assert not checker.check_text(json.dumps(file))[0].valid
+
+
+def test_a_plant_too_fast_to_enclose_is_undecided_with_its_size():
+    fast = LinearPlant.from_rows(
+        [["-1e6", "2e6"], ["-2e6", "1"]], [["1"], ["0"]], [["0", "3e6"]], paper_schedule()
+    )
+    claim = stability_claim(fast)
+    assert claim.verdict is Verdict.UNDECIDED
+    assert "steps (at most" in claim.reason
 
 
 def test_decimals_are_proved_as_written():

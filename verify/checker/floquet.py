@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Iterator
 from fractions import Fraction
 from itertools import pairwise
 from operator import mul
 
 from .bernstein import Form, power_coefficients
-from .exact_numbers import MAX_COUNT, Matrix, require, show
+from .exact_numbers import Matrix, require, show
+from .floquet_exact import read_plant
 from .kinds import kind
-from .matrices import is_positive_definite, is_symmetric, matrix_product, norm, show_matrix
+from .matrices import is_positive_definite, is_symmetric, matrix_product, norm
 from .reading import Node
-from .schedules import Profile, describe_profile, read_profile
+from .schedules import Profile
 
 TERMS = 30
 GRID = 2**128
@@ -41,13 +43,39 @@ def monodromy(A: Matrix, F: Matrix, profile: Profile) -> tuple[Matrix, Fraction]
         require(size < 10**5, "a piece of the schedule is too long for its plant")
         while count < 2 * size:
             count *= 2
-        for i in range(count):
-            a, b = (start + (stop - start) * Fraction(j, count) for j in (i, i + 1))
+        cuts = [start + (stop - start) * Fraction(j, count) for j in range(count + 1)]
+        for a, b in halved(pairwise(cuts), lambda a, b: reach(A, F, profile.gain(a, b), b - a) > MAX_REACH):
             step, error = transition(A, F, profile.gain(a, b), b - a)
             radius = grid_norm(step) * radius + error * (grid_norm(centre) + radius) + Fraction(n, GRID)
             radius = Fraction(int(radius * GRID) + 1, GRID)
             centre = grid_product(step, centre)
     return [[Fraction(x, GRID) for x in row] for row in centre], radius
+
+
+MAX_REACH = 4
+"""Steps are halved until the majorant at four times their length is at most exp of this."""
+MAX_HALVINGS = 12
+
+
+def halved(
+    steps: Iterable[tuple[Fraction, Fraction]], long: Callable[[Fraction, Fraction], bool]
+) -> Iterator[tuple[Fraction, Fraction]]:
+    """Return the steps in order, those that are too long cut in halves."""
+    for step in steps:
+        pending = [(*step, 0)]
+        while pending:
+            a, b, depth = pending.pop()
+            if depth < MAX_HALVINGS and long(a, b):
+                middle = (a + b) / 2
+                pending += [(middle, b, depth + 1), (a, middle, depth + 1)]
+            else:
+                yield a, b
+
+
+def reach(A: Matrix, F: Matrix, gain: Form, h: Fraction) -> Fraction:
+    """Logarithm of the majorant of a step's Taylor series at four times its length."""
+    sizes = [abs(g) * norm(F) + (norm(A) if j == 0 else 0) for j, g in enumerate(power_coefficients(gain))]
+    return sum((h * m * Fraction(4) ** (j + 1) / (j + 1) for j, m in enumerate(sizes)), Fraction(0))
 
 
 def grid_norm(A: Grid) -> Fraction:
@@ -94,15 +122,13 @@ def check_floquet(data: Node, certificate: Node) -> list[str]:
     Below r: P > 0 with M'PM < r^2 P. Above r: x'Px > 0 for some x, and M'PM > r^2 P, so that
     V = x'Px grows by more than r^2 a period. Both with room for the enclosure's radius.
     """
-    plant, claim, witness = data["plant"], certificate["claim"], certificate["witness"]
-    A, B, K = (plant[name].matrix() for name in ("A", "B", "K"))
-    n = len(A)
-    require(n <= MAX_COUNT, "the plant has too many states")
-    fits = len(A[0]) == n and len(B) == n and len(K) == len(B[0]) and len(K[0]) == n
-    require(fits, "A, B and K do not fit each other")
-    profile = read_profile(data)
-    require(profile.period is not None, "Floquet multipliers need a periodic schedule")
-    M, radius = monodromy(A, matrix_product(B, K), profile)
+    A, F, profile, _, words = read_plant(data)
+    claim, witness = certificate["claim"], certificate["witness"]
+    if witness.has("scale"):  # x = D z has the same multipliers
+        d = witness["scale"].vector(len(A))
+        require(all(x > 0 for x in d), "scales must be positive")
+        A, F = ([[x * d[j] / d[i] for j, x in enumerate(row)] for i, row in enumerate(M)] for M in (A, F))
+    M, radius = monodromy(A, F, profile)
     side, r = claim["side"].text(), claim["radius"].number()
     require_change(M, radius, side, r, witness)
     fate = " (stable)" if side == "below" and r <= 1 else " (unstable)" if side == "above" and r >= 1 else ""
@@ -110,8 +136,7 @@ def check_floquet(data: Node, certificate: Node) -> list[str]:
         f"every Floquet multiplier is below {show(r)} in modulus{fate}"
         if side == "below"
         else f"some Floquet multiplier is above {show(r)} in modulus{fate}",
-        f"for x' = (A - g(t) B K) x, A = {show_matrix(A)}, B = {show_matrix(B)}, K = {show_matrix(K)},",
-        describe_profile(profile),
+        *words,
     ]
 
 

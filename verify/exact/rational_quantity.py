@@ -30,3 +30,15 @@ def rational_quantity(
 def seconds(value: Fraction) -> str:
     """Return an instant or duration as text with its unit, to nine digits."""
     return f"{float(value):.9g} s"
+
+
+def exponential_quantity(name: str, exponent: Fraction, label: str = "") -> Quantity:
+    """Quantity that encloses exp of an exact rational <= 700, by ball arithmetic."""
+    import flint
+
+    with flint.ctx.workprec(128):
+        ball = flint.arb(flint.fmpq(exponent.numerator, exponent.denominator)).exp()
+        low, high = float(ball.lower()), float(ball.upper())
+    if exponent == 0:
+        return Quantity(name, 1.0, 1.0, label=label, rigorous=True)
+    return Quantity(name, nextafter(low, -inf), nextafter(high, inf), label=label, rigorous=True)

@@ -7,6 +7,7 @@ multiplier is above r. Both are checked by the stand-alone checker; floats only 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
@@ -19,15 +20,16 @@ from ...models.linear import LinearPlant
 from ...models.types import Array
 from .. import checker
 from ..certificates.format import Certificate, as_text, certificate_text
-from ..certificates.schedule import schedule_data
-from ..exact.rational_quantity import rational_quantity
+from ..exact.rational_quantity import exponential_quantity, rational_quantity
 from ..verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict, Witness
+from .exact import data_of, falling_function, growing_part, plant_data
 
 BACKING_OFF = (1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
 """Relative distances from the computed spectral radius at which a P is tried, nearest first."""
 MAX_STEPS = 20_000
 """Steps of the enclosure that are tried; each is about a millisecond for a small plant."""
 Enclosed = tuple[checker.Matrix, Fraction]
+__all__ = ["SpectralRadius", "plant_data", "spectral_radius", "stability_claim"]
 SOURCE = "Floquet's theorem; Stein's inequality"
 
 
@@ -59,13 +61,18 @@ def spectral_radius(plant: LinearPlant) -> SpectralRadius:
     """
     if plant.schedule.period is None:
         raise ValueError("Floquet multipliers need a periodic schedule: give it a period")
-    if steps_needed(plant) > MAX_STEPS:
-        raise OverflowError(f"enclosing the monodromy matrix takes more than {MAX_STEPS} steps")
-    enclosed = _enclosure(plant)
+    scale = balancing_scale(plant)
+    steps = steps_needed(plant, scale)
+    if steps > MAX_STEPS:
+        raise OverflowError(
+            "no quadratic function was found that falls at every gain, and enclosing the monodromy matrix "
+            f"takes {steps} steps (at most {MAX_STEPS} are tried): period times |A| + |B K| is that long"
+        )
+    enclosed = _enclosure(plant, scale)
     centre = np.array([[float(x) for x in row] for row in enclosed[0]])
     guess = float(np.abs(np.linalg.eigvals(centre)).max())
-    upper = _proved(plant, enclosed, centre, guess, "below")
-    lower = _proved(plant, enclosed, centre, guess, "above")
+    upper = _proved(plant, scale, enclosed, centre, guess, "below")
+    lower = _proved(plant, scale, enclosed, centre, guess, "above")
     found = tuple(c for c in (upper, lower) if c is not None)
     return SpectralRadius(
         Fraction(0) if lower is None else lower.claim["radius"],
@@ -74,18 +81,48 @@ def spectral_radius(plant: LinearPlant) -> SpectralRadius:
     )
 
 
-def steps_needed(plant: LinearPlant) -> int:
+def balancing_scale(plant: LinearPlant) -> list[Fraction]:
+    """Powers of two d for which the plant of z, x_i = d_i z_i, is slow: its size decides the steps."""
+    from scipy.linalg import matrix_balance
+
+    A, F = (np.array([[float(x) for x in row] for row in M]) for M in _fields(plant))
+    size = np.abs(A) + np.abs(F)
+    np.fill_diagonal(size, 0.0)
+    _, (scale, _) = matrix_balance(_bridged(size), permute=False, separate=True)
+    return [Fraction(2) ** round(float(np.log2(d))) for d in scale]
+
+
+def _bridged(size: Array) -> Array:
+    """Couplings as balancing needs them: both ways, so that a state nothing leads back from is scaled too."""
+    length = float(size.max(initial=0.0))
+    return np.where((size == 0) & (size.T > 0), 1e-12 * length, size)
+
+
+def _fields(
+    plant: LinearPlant, scale: Sequence[Fraction] | None = None
+) -> tuple[checker.Matrix, checker.Matrix]:
+    """A and B K in scaled coordinates."""
+    A, B, K = ([list(row) for row in plant.exact[name]] for name in ("A", "B", "K"))
+    d = [Fraction(1)] * len(A) if scale is None else scale
+    A, F = (
+        [[x * d[j] / d[i] for j, x in enumerate(row)] for i, row in enumerate(M)]
+        for M in (A, checker.matrix_product(B, K))
+    )
+    return A, F
+
+
+def steps_needed(plant: LinearPlant, scale: Sequence[Fraction]) -> int:
     """Taylor steps of the enclosure, as the checker cuts a period: at least one a piece of g."""
-    feedback = checker.matrix_product(*([list(r) for r in plant.exact[name]] for name in ("B", "K")))
-    speed = checker.norm([list(row) for row in plant.exact["A"]]) + checker.norm(feedback)
+    A, F = _fields(plant, scale)
+    speed = checker.norm(A) + checker.norm(F)
     knots = plant.schedule.profile.knots
     return sum(max(1, ceil(4 * speed * (b - a))) for a, b in pairwise(knots))
 
 
-def _enclosure(plant: LinearPlant) -> Enclosed:
-    profile = checker.read_profile(checker.Node(as_text(_data(plant)), "data"))
-    A, B, K = ([list(row) for row in plant.exact[name]] for name in ("A", "B", "K"))
-    return checker.monodromy(A, checker.matrix_product(B, K), profile)
+def _enclosure(plant: LinearPlant, scale: Sequence[Fraction]) -> Enclosed:
+    profile = checker.read_profile(checker.Node(as_text(data_of(plant)), "data"))
+    A, F = _fields(plant, scale)
+    return checker.monodromy(A, F, profile)
 
 
 def stability_claim(plant: LinearPlant) -> Claim:
@@ -97,12 +134,18 @@ def stability_claim(plant: LinearPlant) -> Claim:
             "linear.stable", title, statement, Verdict.UNDECIDED, source=SOURCE,
             reason="the schedule is a finite table", next_step="give it a period",
         )  # fmt: skip
+    growing = growing_part(plant)
+    if growing is not None:
+        return _refuted_by_volume(growing, title, statement)
+    falling = falling_function(plant)
     try:
         found = spectral_radius(plant)
     except OverflowError as error:
+        if falling is not None:
+            return _proved_by_function(falling, (), title, statement)
         return Claim(
             "linear.stable", title, statement, Verdict.UNDECIDED, source=SOURCE,
-            reason=str(error), next_step="scale the fast states, or give fewer windows a period",
+            reason=str(error), next_step="leave out states that are fast and stable by themselves",
         )  # fmt: skip
     quantities = _quantities(found)
     if found.high is not None and found.high <= 1:
@@ -111,6 +154,8 @@ def stability_claim(plant: LinearPlant) -> Claim:
             "linear.stable", title, statement, Verdict.PROVED, (evidence,), quantities,
             (rational_quantity("1 - spectral radius", 1 - found.high, 1 - found.low),), source=SOURCE,
         )  # fmt: skip
+    if falling is not None:
+        return _proved_by_function(falling, quantities, title, statement)
     if found.low >= 1:
         violation = rational_quantity("spectral radius - 1", found.low - 1, (found.high or found.low) - 1)
         if violation.low > 0:
@@ -127,13 +172,53 @@ def stability_claim(plant: LinearPlant) -> Claim:
             )  # fmt: skip
     return Claim(
         "linear.stable", title, statement, Verdict.UNDECIDED, quantities=quantities, source=SOURCE,
-        reason="the spectral radius could not be told from 1",
+        reason=_not_told(found),
         next_step="change a gain or an on-time slightly and see on which side it falls",
     )  # fmt: skip
 
 
+def _not_told(found: SpectralRadius) -> str:
+    """Say how near 1 the largest multiplier was enclosed."""
+    if found.high is None:
+        return (
+            "no quadratic function was found that changes by the computed multipliers' size in every period"
+        )
+    return f"the largest multiplier's modulus lies between {float(found.low):.9g} and {float(found.high):.9g}"
+
+
+def _refuted_by_volume(found: Certificate, title: str, statement: str) -> Claim:
+    """REFUTED: a part of the plant has multipliers whose product is at least 1 in modulus."""
+    count = len(found.witness["W"])
+    name = "modulus" if count == 1 else f"geometric mean of the moduli of {count}"
+    violation = exponential_quantity("multiplier", found.claim["growth"] / count, name)
+    values: dict[str, float | list[float]] = {
+        f"W[{i + 1}]": [float(x) for x in row] for i, row in enumerate(found.witness["W"])
+    }
+    summary = "a carried part whose volume does not shrink (Liouville), checked by the stand-alone checker"
+    evidence = Evidence(EvidenceKind.CERTIFICATE, summary, SOURCE, {"certificate": found})
+    words = "y = W x moves by itself, and its multipliers multiply to 1 or more"
+    return Claim(
+        "linear.stable", title, statement, Verdict.REFUTED, (evidence,),
+        witness=Witness(words, values, violation), source=SOURCE,
+    )  # fmt: skip
+
+
+def _proved_by_function(
+    found: Certificate, quantities: tuple[Quantity, ...], title: str, statement: str
+) -> Claim:
+    """PROVED: x'Px falls along every solution."""
+    summary = "x'Px falls at every gain or over the period, checked by the stand-alone checker"
+    evidence = Evidence(EvidenceKind.CERTIFICATE, summary, SOURCE, {"certificate": found})
+    return Claim("linear.stable", title, statement, Verdict.PROVED, (evidence,), quantities, source=SOURCE)
+
+
 def _proved(
-    plant: LinearPlant, enclosed: Enclosed, centre: Array, guess: float, side: str
+    plant: LinearPlant,
+    scale: Sequence[Fraction],
+    enclosed: Enclosed,
+    centre: Array,
+    guess: float,
+    side: str,
 ) -> Certificate | None:
     """The tightest certificate of one side that the checker accepts."""
     if guess <= 0:
@@ -148,7 +233,8 @@ def _proved(
             checker.require_change(*enclosed, side, r, checker.Node(as_text(witness), "witness"))
         except checker.Invalid:
             continue
-        certificate = Certificate("floquet", _data(plant), {"side": side, "radius": r}, witness)
+        witness["scale"] = list(scale)
+        certificate = Certificate("floquet", data_of(plant), {"side": side, "radius": r}, witness)
         (finding,) = checker.check_text(certificate_text([certificate]))
         if finding.valid:
             return certificate
@@ -173,15 +259,6 @@ def _stein(scaled: Array, side: str) -> dict[str, Any] | None:
         _, vectors = np.linalg.eigh(P)
         witness["x"] = [Fraction(round(v * 2**20), 2**20) for v in vectors[:, -1].tolist()]
     return witness
-
-
-def _data(plant: LinearPlant) -> dict[str, Any]:
-    return plant_data(plant) | {"schedule": schedule_data(plant.schedule)}
-
-
-def plant_data(plant: LinearPlant) -> dict[str, Any]:
-    """The three matrices as certificate data."""
-    return {"plant": dict(plant.exact)}
 
 
 def _quantities(found: SpectralRadius) -> tuple[Quantity, ...]:
