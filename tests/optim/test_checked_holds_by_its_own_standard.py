@@ -65,7 +65,7 @@ def test_a_window_of_no_length_changes_nothing():
 
 
 @pytest.mark.parametrize("length", [Fraction(1, 1000), Fraction(1, 10)])
-def test_windows_that_precision_does_not_resolve_are_not_checked(length):
+def test_windows_below_precision_are_not_checked(length):
     """Two short windows, 1e9 s apart: their lengths in double precision are a few digits."""
     windows = [(0, length), (10**9, 10**9 + length)]
     answer = minimum_peak(through(windows, 10**9 + 1, body=UNIT), search=ONE)

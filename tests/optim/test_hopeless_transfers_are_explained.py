@@ -82,7 +82,7 @@ def test_open_time_is_exact():
     assert open_time(problem) == 7 * Fraction("3.21")
 
 
-def test_thrusters_that_push_one_way_only_are_named_once_the_search_has_failed():
+def test_a_missing_direction_is_named_after_a_failed_search():
     one_way = ThrusterAxes.from_rows([[1, 0, 0], [0, 1, 0], [0, 0, 1]])
     problem = paper_transfer(one_way, horizon="11.22")
     answer = minimum_peak(problem, search=ONE, refinement=Refinement(cells=8))

@@ -35,7 +35,7 @@ def test_short_idle_ends_are_kept():
     assert problem.without_idle() == (problem, 0)
 
 
-def test_a_tumbling_start_keeps_its_lead_and_a_tolerant_end_its_tail():
+def test_tumbling_keeps_the_lead_and_tolerance_the_tail():
     tumbling = transfer(F(10**4), rate=(0, 0, F(1, 100)))
     assert tumbling.without_idle() == (tumbling, 0)
     tolerant = transfer(tail=F(10**4), terminal=Terminal(attitude=F(1, 100), rate=F(1, 100)))
