@@ -136,6 +136,10 @@ def _unequal(part: Mapping[str, Any], known: _Known) -> Iterator[str]:
                     yield f"parameters.{name}"
         elif not _same(value, known.data.get(key)):
             yield key
+    if "filter-floor" in kinds and "initial" not in stated:  # earlier versions: among the parameters
+        start = known.data.get("initial", {})
+        if any(not _same(stated["parameters"].get(f"{name}0"), value) for name, value in start.items()):
+            yield "initial"
     if kinds & {*FILTER_STARTS} and not known.filter:
         yield "R (the scenario's law has no state that obeys R' = -lambda R + g^2 (1 + b0))"
     if kinds & {*FILTER_STARTS} and not all(
