@@ -37,10 +37,12 @@ def run(
     nothing but Python: python -I -S checker.pyz FILE, as --checker writes it.
     """
     del debug
+    from ..reports.whole_files import write_whole
+
     if checker is not None:
         from ..verify.certificates.checker_archive import checker_archive
 
-        checker.write_bytes(checker_archive())
+        write_whole(checker, checker_archive())
         typer.echo(f"the checker in {checker}: python -I -S {checker} FILE")
         if scenario is None and output is None:
             return ExitCode.HOLDS
@@ -60,7 +62,7 @@ def run(
     if not result.certificates:
         note("nothing could be certified: no file written")
         return ExitCode.UNDECIDED
-    output.write_text(result.text, encoding="utf-8")
+    write_whole(output, result.text)
     for subject, claim in result.claims:
         held = len(certificates_of([claim]))
         typer.echo(

@@ -69,6 +69,7 @@ def run(
         study = run_optimum(loaded, options, step)
     print_optimum(output(), study)
     if certificate is not None:
+        from ..reports.whole_files import write_whole
         from ..study.optimum.lower_bounds import bound_claim
         from ..verify.certificates import certificate_text
         from ..verify.lyapunov import certificates_of
@@ -78,7 +79,7 @@ def run(
         for claim in claims:
             note(f"{claim.verdict.value} {claim.title}")
         if held:
-            certificate.write_text(certificate_text(held), encoding="utf-8")
+            write_whole(certificate, certificate_text(held))
             note(
                 f"{len(held)} certificates in {certificate}: intermit recheck {certificate} proves them anew"
             )

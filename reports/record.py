@@ -10,7 +10,6 @@ from __future__ import annotations
 import hashlib
 import io
 import json
-import os
 import zipfile
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -22,6 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .structure import faults
 from .values import freeze, plain, thaw
+from .whole_files import write_whole
 
 FORMAT = "intermit-record"
 VERSION = 1
@@ -117,8 +117,8 @@ def write_record(record: Record, folder: str | Path) -> Path:
 
 def write_record_to(record: Record, path: str | Path) -> None:
     """Write the document to `path` and its arrays beside it, with the suffix .npz."""
-    _replace(Path(path).with_suffix(".npz"), arrays_bytes(record.arrays))
-    _replace(Path(path), record.to_json().encode())
+    write_whole(Path(path).with_suffix(".npz"), arrays_bytes(record.arrays))
+    write_whole(Path(path), record.to_json().encode())
 
 
 def read_record(path: str | Path) -> Record:
@@ -268,10 +268,3 @@ def _read_arrays(path: Path, wanted: bool) -> dict[str, Array]:
 
 def _refuse_constant(name: str) -> float:
     raise ValueError(f"{name} is not JSON")
-
-
-def _replace(path: Path, data: bytes) -> None:
-    """Write beside and rename, so that a reader never sees half a file."""
-    partial = path.with_name(path.name + ".part")
-    partial.write_bytes(data)
-    os.replace(partial, path)
