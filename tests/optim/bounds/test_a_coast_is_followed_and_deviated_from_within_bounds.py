@@ -121,7 +121,7 @@ def test_errors_of_coarse_arithmetic_are_within_their_bound(monkeypatch, bits, o
         true, error = coast_attitude(J, q, H, Fraction(n + 1))
         with monkeypatch.context() as patch:
             patch.setattr(peak_coast, "PEAK_COAST_BITS", bits)
-            patch.setattr(checker, "PEAK_COAST_ORDER", order)
+            patch.setattr(peak_coast, "PEAK_COAST_ORDER", order)
             reached, bound = coast_attitude(J, q, H, Fraction(n + 1))
         off = checker.length_interval([a - b for a, b in zip(true, reached, strict=True)])[1]
         assert error < bound
