@@ -21,6 +21,7 @@ from .files import read_text
 from .units import Heading, heading
 
 _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
+_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
 _DATE = re.compile(r"\d{4}-\d{2}-\d{2}")
 _NUMBER_WORDS = frozenset({"nan", "inf", "infinity"})
 
@@ -87,7 +88,9 @@ def read_rows(path: Path, key: str, forms: Sequence[tuple[Column, Column]]) -> T
         file: unreadable, empty, header only.
     """
     where = f"{key}: {path.name}"
-    lines = _lines(read_text(path, where), where)
+    text = read_text(path, where)
+    lines = _lines(text, where)
+    _refuse_units_in_comments(text, lines, forms, where)
     first = forms[0][0].names[0], forms[0][1].names[0]
     if not lines:
         raise ScenarioError(where, f"is empty: expected rows '{first[0]},{first[1]}'")
@@ -116,13 +119,46 @@ def _lines(text: str, where: str) -> list[_Line]:
             (cells,) = csv.reader([line], delimiter=separator, skipinitialspace=True, strict=True)
         except (csv.Error, ValueError) as error:
             raise ScenarioError(f"{where} line {number}", f"cannot be split into cells: {error}") from None
-        cells = [cell.strip() for cell in cells]
-        if separator != ",":
-            cells = [c.replace(",", ".") if _DECIMAL_COMMA.fullmatch(c) else c for c in cells]
-        while len(cells) > 2 and not cells[-1]:  # a separator at the end of each line
-            cells.pop()
-        lines.append(_Line(number, cells))
+        lines.append(_Line(number, [cell.strip() for cell in cells]))
+    if separator != ",":
+        lines = _with_points(lines, where)
+    for line in lines:
+        while len(line.cells) > 2 and not line.cells[-1]:  # a separator at the end of each line
+            line.cells.pop()
     return lines
+
+
+def _with_points(lines: list[_Line], where: str) -> list[_Line]:
+    """Return the lines with points for decimal commas; refuse commas that may separate thousands."""
+    with_comma = [(line, c) for line in lines for c in line.cells if _DECIMAL_COMMA.fullmatch(c)]
+    if with_comma and all(_THOUSANDS.fullmatch(cell) for _, cell in with_comma):
+        line, cell = with_comma[0]
+        raise ScenarioError(
+            f"{where} line {line.number}",
+            f"{quote(cell)} may be decimal or thousands: write a decimal point",
+        )
+    return [
+        _Line(line.number, [c.replace(",", ".") if _DECIMAL_COMMA.fullmatch(c) else c for c in line.cells])
+        for line in lines
+    ]
+
+
+def _refuse_units_in_comments(
+    text: str, lines: list[_Line], forms: Sequence[tuple[Column, Column]], where: str
+) -> None:
+    """Refuse a unit that only a comment above the rows states: comments are not read."""
+    units = {u for form in forms for column in form for u, x in column.units.items() if x != 1}
+    words = "|".join(re.escape(u) for u in sorted(units, key=len, reverse=True))
+    stated = re.compile(rf"(?:_|\bin\s+|[\[(]\s*)(?P<unit>{words})(?=[\s,;\])]|$)") if units else None
+    first = lines[0].number if lines else 0
+    for number, line in enumerate(text.splitlines()[: max(first - 1, 0)], start=1):
+        found = stated.search(line) if stated is not None else None
+        if found is not None:
+            raise ScenarioError(
+                f"{where} line {number}",
+                f"a comment speaks of {quote(found['unit'])}, and comments are not read: name the columns "
+                "with their units in a header without #",
+            )
 
 
 def _is_header(cells: list[str]) -> bool:
@@ -163,7 +199,11 @@ def _places(
     if not complete:
         raise ScenarioError(at, _no_columns(line, headings, forms))
     ((number, places),) = complete
-    factors = [_factor(headings[i], column, at) for i, column in zip(places, forms[number], strict=True)]
+    pair = forms[number]
+    if pair[0].units is pair[1].units and len({headings[i].unit is None for i in places}) > 1:
+        names = " and ".join(quote(line.cells[i]) for i in places)
+        raise ScenarioError(at, f"only one of {names} states its unit: state both, or neither for seconds")
+    factors = [_factor(headings[i], column, at) for i, column in zip(places, pair, strict=True)]
     return number, places, (factors[0], factors[1])
 
 
