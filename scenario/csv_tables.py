@@ -122,9 +122,9 @@ def _lines(text: str, where: str) -> list[_Line]:
         lines.append(_Line(number, [cell.strip() for cell in cells]))
     if separator != ",":
         lines = _with_points(lines, where)
-    for line in lines:
-        while len(line.cells) > 2 and not line.cells[-1]:  # a separator at the end of each line
-            line.cells.pop()
+    for one in lines:
+        while len(one.cells) > 2 and not one.cells[-1]:  # a separator at the end of each line
+            one.cells.pop()
     return lines
 
 

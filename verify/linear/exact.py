@@ -9,6 +9,7 @@ T A - (int g) B K, decides stable plants however stiff.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any
@@ -170,7 +171,9 @@ def _lyapunov(field: Any) -> list[list[Fraction]] | None:
         balanced, T = matrix_balance(N, permute=False)
         if not np.linalg.eigvals(balanced).real.max() < 0:
             return None
-        P = solve_continuous_lyapunov(balanced.T, -np.abs(balanced).max() * np.eye(len(N)))
+        with warnings.catch_warnings():  # P is only proposed: what it proves is checked exactly
+            warnings.simplefilter("ignore")
+            P = solve_continuous_lyapunov(balanced.T, -np.abs(balanced).max() * np.eye(len(N)))
     except (LinAlgError, ValueError):
         return None
     inverse = np.diag(1 / np.diag(T))
