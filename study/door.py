@@ -40,10 +40,6 @@ def _scenario(source: Source) -> Scenario:
     return source if isinstance(source, Scenario) else load_scenario(source)
 
 
-def _silent(stage: str, share: float) -> None:
-    del stage, share
-
-
 def check(source: Source, **options: Any) -> CheckStudy:
     """Decide every claim of a scenario: `.claims` about the schedule, `.cases` for each law, `.sentence`.
 
@@ -140,9 +136,10 @@ def certify(source: Source, *, bound: bool = False) -> Certification:
     source : a scenario, or its file's path
     bound : the lower bound of the least peak torque too
     """
+    from ..models.types import silent
     from .certify.run import certify as run
 
-    return run(_scenario(source), _silent, bound=bound)
+    return run(_scenario(source), silent, bound=bound)
 
 
 def recheck(text: str) -> list[Finding]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from fractions import Fraction
 from functools import cache
 from itertools import zip_longest
@@ -89,8 +88,3 @@ def _binomial(n: int, k: int) -> int:
     from math import comb
 
     return comb(n, k)
-
-
-def as_floats(p: Sequence[Fraction]) -> list[float]:
-    """Nearest floats of the coefficients."""
-    return [float(c) for c in p]

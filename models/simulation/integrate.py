@@ -20,6 +20,8 @@ from .phases import Phase, phase_field, phases_between, signal_degree
 from .switching import SlidingError, Switching, jumping_functions
 from .trajectory import Segment, Trajectory
 
+KNOWN = 1000
+"""A filter state is known while it is above this many absolute tolerances: to some 0.1 per cent."""
 MAX_EVALUATIONS = 2_000_000
 """Right-hand sides of one run, some 10 microseconds each."""
 
@@ -108,6 +110,7 @@ def simulate(
         else:
             segments += _integrate_switching(switching, phase, state, method)
         state = segments[-1].end_state
+        _require_known_gain(loop, segments[-1], method)
     count = field.count if switching is None else switching.evaluations
     return Trajectory(loop, body, schedule, tuple(segments), count)
 
@@ -171,6 +174,30 @@ def _integrate_phase(field: _RightHandSide, phase: Phase, state: Array, method: 
     if not solution.success or not np.all(np.isfinite(solution.y[:, -1])):
         raise SimulationError(_why_stopped(field.state_names, solution.t[-1], solution.y[:, -1]))
     return Segment(phase, solution.t, solution.y, solution.sol)
+
+
+def _require_known_gain(loop: ClosedLoop, segment: Segment, method: DOP853) -> None:
+    """Refuse a run whose gain divides by a filter state that has decayed into the integration's error.
+
+    Through a long idle stretch R falls as exp(-lambda t), and what is left of it is noise, its sign included.
+
+    Raises
+    ------
+    SimulationError
+        Saying when, and what R would have to be.
+    """
+    import casadi as ca
+
+    R, gain = loop.controller_states.get("R"), loop.control.gain
+    if R is None or gain is None or not ca.depends_on(ca.SX(gain), R):
+        return
+    values, least = segment.states[loop.state_names.index("R")], KNOWN * method.atol
+    if values.min() < least:
+        at = float(segment.times[int(np.argmax(values < least))])
+        raise SimulationError(
+            f"the run stopped at t = {at:.6g} s: R has decayed below {least:g} s, where its value is the "
+            "integration's error, and the gain divides by it; shorten the idle time before, or lower lambda"
+        )
 
 
 def _why_stopped(names: tuple[str, ...], time: float, state: Array) -> str:

@@ -83,10 +83,6 @@ class SearchSpace:
         ]
         return np.array(point)
 
-    def law_at(self, point: Array) -> Law:
-        """The law with the parameters at a point of the unit cube."""
-        return with_parameters(self.law, self.decode(point))
-
 
 def with_parameters(law: Law, values: Mapping[str, Fraction]) -> Law:
     """The same law with some parameters replaced, by the names of `Law.parameters`.

@@ -10,7 +10,7 @@ from typing import final
 import numpy as np
 
 from ...models.rigid_body import RigidBody
-from ..verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict, Witness
+from ..verdict import Claim, Evidence, EvidenceKind, Verdict, Witness
 from .function import DerivativeFunction
 from .sampling import ROUNDING, DerivativeSamples
 from .witness import exact_witness
@@ -153,12 +153,3 @@ def _details(samples: DerivativeSamples, state: Sequence[float] | np.ndarray) ->
             "g'",
         ],
     }
-
-
-def margin_quantities(samples: DerivativeSamples) -> tuple[Quantity, ...]:
-    """The least margins found, as ordinary figures."""
-    name, unit = "least_decay_rate", "1/s"
-    return (
-        Quantity.point(name, samples.worst.value, unit, digits=4, label="least -V'/W found"),
-        Quantity.point(f"{name}_sampled", samples.sampled_worst, unit, digits=4, label="least -V'/W sampled"),
-    )

@@ -76,11 +76,6 @@ def partial(p: Polynomial, axis: int) -> Polynomial:
     return result
 
 
-def evaluated(p: Polynomial, x: Sequence[Fraction]) -> Fraction:
-    """Return p(x), exactly."""
-    return sum((c * x[0] ** e[0] * x[1] ** e[1] * x[2] ** e[2] for e, c in p.items()), Fraction(0))
-
-
 def shifted(p: Polynomial, x: Sequence[Fraction]) -> Polynomial:
     """Return t -> p(x + t): the Taylor coefficients at x."""
     result: Polynomial = {}
@@ -92,11 +87,6 @@ def shifted(p: Polynomial, x: Sequence[Fraction]) -> Polynomial:
             key = (low[0], low[1], low[2])
             result[key] = result.get(key, Fraction(0)) + factor
     return {e: c for e, c in result.items() if c}
-
-
-def absolute_sum(p: Polynomial) -> Fraction:
-    """Sum of the absolute coefficients: a bound of |p| on the cube [-1, 1]^3."""
-    return sum((abs(c) for c in p.values()), Fraction(0))
 
 
 def as_table(p: Mapping[Exponent, Fraction], degree: int) -> Array:
