@@ -9,6 +9,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from .errors import InputError as InputError
     from .models.closed_loop import close_loop as close_loop
     from .models.laws import AdaptiveScaling as AdaptiveScaling
     from .models.laws import Law as Law
@@ -37,6 +38,7 @@ _DOOR = ("bound", "certify", "check", "compare", "load", "optimum", "recheck", "
 """What the command line does, each as one call."""
 _EXPORTS = {
     "AdaptiveScaling": ".models.laws",
+    "InputError": ".errors",
     "Law": ".models.laws",
     "PersistenceFilter": ".models.laws",
     "QuaternionPD": ".models.laws",

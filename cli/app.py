@@ -10,9 +10,10 @@ from typing import Annotated
 
 import typer
 
+from ..errors import InputError
 from ..study.threads import one_thread
 from .exit_codes import HELP, ExitCode
-from .options import Debug, InputError, debugging
+from .options import Debug, debugging
 
 COMMANDS = (
     "init",
@@ -29,9 +30,6 @@ COMMANDS = (
     "report",
 )
 """Modules of this room that are commands, in the order of the help page; `_` is spelled `-`."""
-
-INPUT_ERRORS = frozenset({"ScenarioError", "RecordError", "FolderError"})
-"""Errors of the rooms below that the user can mend, by name: naming them imports nothing."""
 
 MAX_MESSAGE = 1000
 """Characters of an error message that are shown."""
@@ -113,7 +111,7 @@ def _report(error: Exception) -> int:
     usage = getattr(error, "format_message", None)
     if usage is not None:
         return _fail(usage() or "no command given; see --help", ExitCode.BAD_INPUT)
-    if isinstance(error, InputError) or type(error).__name__ in INPUT_ERRORS:
+    if isinstance(error, InputError):
         return _fail(str(error), ExitCode.BAD_INPUT)
     if isinstance(error, OSError):
         where = f"{error.filename}: " if error.filename is not None else ""

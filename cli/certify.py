@@ -8,8 +8,9 @@ from typing import Annotated
 
 import typer
 
+from ..errors import InputError
 from .exit_codes import ExitCode
-from .options import Debug, InputError
+from .options import Debug
 
 
 def run(

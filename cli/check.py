@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from .options import Debug, InputError, JsonFile, ScenarioFiles
+from ..errors import InputError
+from .options import Debug, JsonFile, ScenarioFiles
 
 
 def run(

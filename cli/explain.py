@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .options import Debug, InputError
+from ..errors import InputError
+from .options import Debug
 
 if TYPE_CHECKING:
     from ..study.check.run import CheckStudy

@@ -8,7 +8,8 @@ from typing import Annotated, Literal, get_args
 
 import typer
 
-from .options import Debug, InputError, JsonFile, ScenarioFile
+from ..errors import InputError
+from .options import Debug, JsonFile, ScenarioFile
 
 
 def run(

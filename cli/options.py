@@ -7,10 +7,7 @@ from typing import Annotated, Literal, final
 
 import typer
 
-
-@final
-class InputError(ValueError):
-    """What the user asked for cannot be done as asked: one line, exit code 2."""
+from ..errors import InputError
 
 
 @final

@@ -8,7 +8,8 @@ from typing import Annotated
 
 import typer
 
-from .options import Debug, InputError
+from ..errors import InputError
+from .options import Debug
 
 Sources = Annotated[
     list[Path],

@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from .options import Debug, InputError, JsonFile, PeakNorm, ScenarioFile, norm_of
+from ..errors import InputError
+from .options import Debug, JsonFile, PeakNorm, ScenarioFile, norm_of
 
 
 def run(

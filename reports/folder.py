@@ -18,12 +18,14 @@ from collections.abc import Mapping
 from pathlib import Path, PurePosixPath
 from tempfile import mkdtemp
 
+from ..errors import InputError
+
 MANIFEST = "manifest.json"
 _AT_FDCWD = -100
 _RENAME_EXCHANGE = 2
 
 
-class FolderError(ValueError):
+class FolderError(InputError):
     """The target cannot be written without losing something that is not this package's."""
 
 

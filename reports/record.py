@@ -19,6 +19,7 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..errors import InputError
 from .structure import faults
 from .values import freeze, plain, thaw
 from .whole_files import write_whole
@@ -31,7 +32,7 @@ ARRAYS_NAME = "results.npz"
 Array = NDArray[np.float64]
 
 
-class RecordError(ValueError):
+class RecordError(InputError):
     """The record does not have the form its schema demands, or its files do not belong together."""
 
 

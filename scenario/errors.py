@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from typing import final
 
+from ..errors import InputError
+
 MAX_QUOTE = 60
 """Characters of a user's own text that an error message repeats."""
 
 
 @final
-class ScenarioError(ValueError):
+class ScenarioError(InputError):
     """Bad input, said in one line: file, key (or CSV line), what was expected and received.
 
     Attributes

@@ -7,10 +7,14 @@ import subprocess
 import sys
 from types import SimpleNamespace
 
+import intermit
 import pytest
 from intermit.cli import app as frame
 from intermit.cli.exit_codes import ExitCode
-from intermit.cli.options import InputError
+from intermit.errors import InputError
+from intermit.reports import RecordError
+from intermit.reports.folder import FolderError
+from intermit.scenario import ScenarioError
 
 HEAVY = (
     "numpy",
@@ -63,6 +67,14 @@ def test_outcome_has_its_exit_code(
     errors = capfd.readouterr().err
     assert errors.count("\n") == (0 if code in (0, 1, 3) else 1)
     assert "Traceback" not in errors
+
+
+def test_errors_are_told_by_their_base_and_not_by_their_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    for kind in (ScenarioError, RecordError, FolderError):
+        assert issubclass(kind, intermit.InputError)
+    namesake = type("ScenarioError", (ValueError,), {})
+    assert outcome(monkeypatch, raising(ScenarioError("scenario.toml: law.lambda", "must be > 0"))) == 2
+    assert outcome(monkeypatch, raising(namesake("not the user's"))) == ExitCode.INTERNAL
 
 
 def test_debug_shows_the_traceback(
