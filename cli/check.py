@@ -8,22 +8,25 @@ from typing import Annotated
 import typer
 
 from ..errors import InputError
-from .options import Debug, JsonFile, ScenarioFiles
+from ..study.options import CheckOptions, help_of
+from .options import WORKERS, Debug, JsonFile, ScenarioFiles
 
 
 def run(
     scenarios: ScenarioFiles,
     json: JsonFile = None,
     simulate: Annotated[
-        bool, typer.Option("--simulate/--no-simulate", help="Run every law from the initial state too.")
+        bool, typer.Option("--simulate/--no-simulate", help=help_of(CheckOptions, "simulate"))
     ] = True,
     margins: Annotated[
-        bool, typer.Option("--margins/--no-margins", help="Look for how far the schedule may change.")
+        bool, typer.Option("--margins/--no-margins", help=help_of(CheckOptions, "margins"))
     ] = True,
     search: Annotated[
-        bool, typer.Option("--search/--no-search", help="Look for the worst start by simulation.")
+        bool, typer.Option("--search/--no-search", help=help_of(CheckOptions, "search"))
     ] = True,
-    workers: Annotated[int, typer.Option("--workers", min=1, help="Processes; the result is the same.")] = 2,
+    workers: Annotated[
+        int, typer.Option("--workers", min=1, help=help_of(CheckOptions, "workers"))
+    ] = WORKERS,
     debug: Debug = False,
 ) -> int:
     """Check a schedule and its laws: one verdict a condition, with its numbers and margin.
@@ -32,7 +35,7 @@ def run(
     """
     del debug
     from ..scenario import load_scenario
-    from ..study.check.run import CheckOptions, run_check
+    from ..study.check.run import run_check
     from ..study.claims.counting import exit_code
     from .check_page import print_check
     from .console import note, output, progress

@@ -42,7 +42,8 @@ def run(
 
 def _study(path: Path) -> CheckStudy:
     from ..scenario import load_scenario
-    from ..study.check.run import CheckOptions, run_check
+    from ..study.check.run import run_check
+    from ..study.options import CheckOptions
     from .console import progress
 
     loaded = load_scenario(path)

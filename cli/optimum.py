@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 from time import perf_counter
-from typing import Annotated, Literal, get_args
+from typing import Annotated, get_args
 
 import typer
 
 from ..errors import InputError
+from ..study.options import NormKey, OptimumOptions, SolverKey, help_of
 from .options import Debug, JsonFile, ScenarioFile
 
 
@@ -17,24 +18,22 @@ def run(
     json: JsonFile = None,
     norm: Annotated[
         list[str] | None,
-        typer.Option("--norm", help="component, euclidean or thrusters; repeat for several (default: both)."),
+        typer.Option("--norm", help=help_of(OptimumOptions, "norms")),
     ] = None,
     starts: Annotated[
-        int | None, typer.Option("--starts", min=1, help="Starts for each quaternion sign of the target.")
+        int | None, typer.Option("--starts", min=1, help=help_of(OptimumOptions, "starts"))
     ] = None,
-    seed: Annotated[int | None, typer.Option("--seed", min=0, help="Seed of the first random start.")] = None,
+    seed: Annotated[int | None, typer.Option("--seed", min=0, help=help_of(OptimumOptions, "seed"))] = None,
     solver: Annotated[
-        Literal["auto", "fast", "reference"],
-        typer.Option("--solver", help="fast: convex programs; reference: nonlinear program (IPOPT)."),
+        SolverKey,
+        typer.Option("--solver", help=help_of(OptimumOptions, "solver")),
     ] = "auto",
-    bound: Annotated[
-        bool, typer.Option("--bound/--no-bound", help="Certify a lower bound beside each optimum.")
-    ] = True,
+    bound: Annotated[bool, typer.Option("--bound/--no-bound", help=help_of(OptimumOptions, "bound"))] = True,
     least_time: Annotated[
-        bool, typer.Option("--least-time", help="Find the least transfer time within the torque limit too.")
+        bool, typer.Option("--least-time", help=help_of(OptimumOptions, "least_time"))
     ] = False,
     least_impulse: Annotated[
-        bool, typer.Option("--least-impulse", help="Find the least impulse within the torque limit too.")
+        bool, typer.Option("--least-impulse", help=help_of(OptimumOptions, "least_impulse"))
     ] = False,
     certificate: Annotated[
         Path | None,
@@ -45,7 +44,7 @@ def run(
     """Find the least peak torque any controller could do with through the windows."""
     del debug
     from ..scenario import load_scenario
-    from ..study.optimum.run import NormKey, OptimumOptions, run_optimum
+    from ..study.optimum.run import run_optimum
     from .console import note, output, progress
     from .optimum_page import print_optimum
 

@@ -8,6 +8,7 @@ from typing import Annotated, Literal, final
 import typer
 
 from ..errors import InputError
+from ..study.options import TuneOptions, help_of
 
 
 @final
@@ -25,6 +26,9 @@ def _remember(asked: bool) -> bool:
     return asked
 
 
+WORKERS = 2
+"""Processes of a command that can share its work, unless the user says otherwise."""
+
 Debug = Annotated[
     bool,
     typer.Option("--debug", callback=_remember, is_eager=True, help="Show the traceback of an error."),
@@ -37,9 +41,7 @@ JsonFile = Annotated[
     Path | None,
     typer.Option("--json", metavar="FILE", help="Write the whole record to FILE (arrays beside it, .npz)."),
 ]
-PeakNorm = Annotated[
-    str | None, typer.Option(metavar="NORM", help="Norm of the torque: component or euclidean.")
-]
+PeakNorm = Annotated[str | None, typer.Option(metavar="NORM", help=help_of(TuneOptions, "norm"))]
 
 
 def norm_of(word: str | None) -> Literal["component", "euclidean"] | None:

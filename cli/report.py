@@ -9,7 +9,8 @@ from typing import Annotated
 import typer
 
 from ..errors import InputError
-from .options import Debug
+from ..study.options import CheckOptions, ReportOptions, help_of
+from .options import WORKERS, Debug
 
 Sources = Annotated[
     list[Path],
@@ -26,19 +27,17 @@ def run(
     out: Annotated[Path, typer.Option("-o", "--out", metavar="DIR", help="Folder of the report.")],
     date: Annotated[str, typer.Option(help="Date on the title page (default: SOURCE_DATE_EPOCH).")] = "",
     author: Annotated[str, typer.Option(help="Name on the title page.")] = "",
-    optimum: Annotated[bool, typer.Option("--optimum/--no-optimum", help="Find the optimum.")] = True,
+    optimum: Annotated[
+        bool, typer.Option("--optimum/--no-optimum", help=help_of(ReportOptions, "optimum"))
+    ] = True,
     compare: Annotated[
-        bool, typer.Option("--compare/--no-compare", help="Compare each law with its optimum.")
+        bool, typer.Option("--compare/--no-compare", help=help_of(ReportOptions, "comparison"))
     ] = True,
     margins: Annotated[
-        bool, typer.Option("--margins/--no-margins", help="Look for how far the schedule may change.")
+        bool, typer.Option("--margins/--no-margins", help=help_of(CheckOptions, "margins"))
     ] = True,
-    front: Annotated[
-        bool, typer.Option("--front/--no-front", help="The front that the scenario's [report] asks for.")
-    ] = True,
-    audit: Annotated[
-        bool, typer.Option("--audit/--no-audit", help="The audit that the scenario's [report] asks for.")
-    ] = True,
+    front: Annotated[bool, typer.Option("--front/--no-front", help=help_of(ReportOptions, "front"))] = True,
+    audit: Annotated[bool, typer.Option("--audit/--no-audit", help=help_of(ReportOptions, "audit"))] = True,
     force: Annotated[bool, typer.Option("--force", help="Write among files of another's making.")] = False,
     debug: Debug = False,
 ) -> int:
@@ -91,8 +90,8 @@ def _study(
     from ..reports.build import exit_code, write_report
     from ..reports.folder import refuse
     from ..scenario import load_scenario
-    from ..study.check.run import CheckOptions, CheckStudy
-    from ..study.report.run import ReportOptions, run_report
+    from ..study.check.run import CheckStudy
+    from ..study.report.run import run_report
     from .check_page import print_check
     from .console import note, output, progress
 
@@ -100,7 +99,7 @@ def _study(
     refuse(out, force=force)
     for warning in scenario.warnings:
         note(f"warning: {warning}")
-    check = CheckOptions(margins=wanted[2], workers=2)
+    check = CheckOptions(margins=wanted[2], workers=WORKERS)
     options = ReportOptions(
         optimum=wanted[0], comparison=wanted[1], front=wanted[3], audit=wanted[4], check=check
     )

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from .options import Debug, JsonFile, PeakNorm, ScenarioFile, norm_of
+from .options import WORKERS, Debug, JsonFile, PeakNorm, ScenarioFile, norm_of
 
 
 def run(
@@ -15,20 +15,19 @@ def run(
         str | None, typer.Option(metavar="LABEL", help="Law to study (default: the first).")
     ] = None,
     peak_norm: PeakNorm = None,
-    workers: Annotated[int, typer.Option(min=1, help="Processes that share the cases.")] = 2,
+    workers: Annotated[int, typer.Option(min=1, help="Processes that share the cases.")] = WORKERS,
     json: JsonFile = None,
     debug: Debug = False,
 ) -> int:
     """Study schedules: peak, certified bound, floor of R and settling against duty cycle and period."""
     del debug
-    from concurrent.futures import ProcessPoolExecutor
-
     from ..scenario import load_scenario
+    from ..study.pool import executor_of
     from ..study.sweep.run import run_schedule_study, schedule_record
     from .console import progress
     from .finish import finish
 
     loaded = load_scenario(scenario)
-    with progress(loaded.name), ProcessPoolExecutor(workers) as executor:
+    with progress(loaded.name), executor_of(workers) as executor:
         study = run_schedule_study(loaded, law=law, norm=norm_of(peak_norm), executor=executor)
     return finish(schedule_record(study), json)

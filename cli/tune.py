@@ -8,7 +8,8 @@ from typing import Annotated
 import typer
 
 from ..errors import InputError
-from .options import Debug, JsonFile, PeakNorm, ScenarioFile, norm_of
+from ..study.options import TuneOptions, help_of
+from .options import WORKERS, Debug, JsonFile, PeakNorm, ScenarioFile, norm_of
 
 
 def run(
@@ -17,20 +18,21 @@ def run(
         str | None, typer.Option(metavar="S[,S...]", help="Latest settling time, s; several with --front.")
     ] = None,
     peak_norm: PeakNorm = None,
-    law: Annotated[
-        str | None, typer.Option(metavar="LABEL", help="Law to tune (default: the first).")
-    ] = None,
+    law: Annotated[str | None, typer.Option(metavar="LABEL", help=help_of(TuneOptions, "law"))] = None,
     front: Annotated[
         bool, typer.Option("--front", help="Every law at every settling time, beside the optimum.")
     ] = False,
-    workers: Annotated[int, typer.Option(min=1, help="Processes that share the points of a front.")] = 2,
-    seed: Annotated[int | None, typer.Option(min=0, help="Seed of the search.")] = None,
+    workers: Annotated[
+        int, typer.Option(min=1, help="Processes that share the points of a front.")
+    ] = WORKERS,
+    seed: Annotated[int | None, typer.Option(min=0, help=help_of(TuneOptions, "seed"))] = None,
     json: JsonFile = None,
     debug: Debug = False,
 ) -> int:
     """Find the parameters with the least peak torque that settle in time, under certified conditions."""
     del debug
     from ..scenario import load_scenario
+    from ..study.pool import executor_of
     from ..study.tune.run import front_record, run_front, run_tuning, tuning_record
     from .console import progress
     from .finish import finish
@@ -40,11 +42,9 @@ def run(
     times = _times(settle)
     with progress(loaded.name):
         if front:
-            from concurrent.futures import ProcessPoolExecutor
-
             if not times:
                 raise InputError("--front needs --settle with the settling times, e.g. --settle 20,28,36")
-            with ProcessPoolExecutor(workers) as executor:
+            with executor_of(workers) as executor:
                 found = run_front(loaded, times, norm=norm, executor=executor)
             return finish(front_record(loaded, found), json)
         if len(times) > 1:

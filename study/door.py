@@ -7,10 +7,14 @@ unless the name says so.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Literal
 
+from ..errors import InputError
 from ..scenario import Scenario, load_scenario
+from .options import CheckOptions, NormKey, OptimumOptions, ReportOptions, SolverKey
 
 if TYPE_CHECKING:
     from ..optim.tuning.tune import Tuned
@@ -36,26 +40,54 @@ def load(path: str | Path) -> Scenario:
     return load_scenario(path)
 
 
+def positive(name: str, value: Fraction | float | str, unit: str) -> Fraction:
+    """Exact value > 0 of an option: a text or fraction as it is, a float by its shortest decimal.
+
+    Raises
+    ------
+    InputError
+        If it is no number, or not > 0.
+    """
+    try:
+        exact = Fraction(value if isinstance(value, Fraction) else str(value).strip())
+    except (ValueError, ZeroDivisionError):
+        raise InputError(f"{name}: expected a number of {unit}, received {value!r}") from None
+    if exact <= 0:
+        raise InputError(f"{name}: expected a number > 0 {unit}, received {value!r}")
+    return exact
+
+
 def _scenario(source: Source) -> Scenario:
     return source if isinstance(source, Scenario) else load_scenario(source)
 
 
-def check(source: Source, **options: Any) -> CheckStudy:
+def check(
+    source: Source, *, simulate: bool = True, margins: bool = True, search: bool = True, workers: int = 1
+) -> CheckStudy:
     """Decide every claim of a scenario: `.claims` about the schedule, `.cases` for each law, `.sentence`.
 
     Parameters
     ----------
     source : a scenario, or its file's path
-    **options : of `CheckOptions`: simulate, margins, search (bool), workers (int)
+    simulate : run every law from the initial state too
+    margins : look for how far schedule and lambda may change before convergence is no longer certified
+    search : look for the worst start by simulation
+    workers : processes, >= 1; the result does not depend on it
 
     Returns
     -------
     CheckStudy
         Each claim has a `verdict` (PROVED, REFUTED, UNDECIDED), its `statement`, `evidence`, `quantities`.
-    """
-    from .check.run import CheckOptions, run_check
 
-    return run_check(_scenario(source), CheckOptions(**options))
+    Raises
+    ------
+    ScenarioError
+        If the scenario asks for a claim that does not exist, or a law cannot be built.
+    """
+    from .check.run import run_check
+
+    options = CheckOptions(simulate=simulate, margins=margins, search=search, workers=workers)
+    return run_check(_scenario(source), options)
 
 
 def simulate(source: Source, law: str | None = None) -> Run:
@@ -82,23 +114,55 @@ def simulate(source: Source, law: str | None = None) -> Run:
     return run_law(scenario, choice.build())
 
 
-def optimum(source: Source, **options: Any) -> OptimumStudy:
+def optimum(
+    source: Source,
+    *,
+    norms: Sequence[NormKey] = (),
+    starts: int | None = None,
+    seed: int | None = None,
+    solver: SolverKey = "auto",
+    mesh_gap: float = 1e-6,
+    bound: bool = True,
+    least_time: bool = False,
+    least_impulse: bool = False,
+) -> OptimumStudy:
     """Find the least peak torque through the windows, with its certified lower bound.
 
     Parameters
     ----------
     source : a scenario, or its file's path
-    **options : of `OptimumOptions`: norms ("component", "euclidean"), starts, seed, solver, mesh_gap, bound,
-        least_time, least_impulse
+    norms : "component", "euclidean", "thrusters"; none for both torques, or the thrusters if it names some
+    starts : for each quaternion sign of the target, >= 1; None for the scenario's
+    seed : of the first random start, >= 0; None for the scenario's
+    solver : "fast" (convex programs), "reference" (nonlinear program), "auto" (the first, then the second)
+    mesh_gap : largest fraction of the peak that finer cells may still gain
+    bound : certify a lower bound beside each optimum
+    least_time, least_impulse : find the least transfer time, s, the least impulse, N m s, within the torque
+        limit too
 
     Returns
     -------
     OptimumStudy
         `.optima`, one a norm: `.answer.peak` (N m), `.answer.standing` (CHECKED, UNDECIDED), `.bound.value`.
-    """
-    from .optimum.run import OptimumOptions, run_optimum
 
-    return run_optimum(_scenario(source), OptimumOptions(**options))
+    Raises
+    ------
+    ScenarioError
+        If thrusters or a limit are asked for and the scenario gives none.
+    """
+    from .optimum.run import run_optimum
+
+    options = OptimumOptions(
+        norms=tuple(norms),
+        starts=starts,
+        seed=seed,
+        solver=solver,
+        mesh_gap=mesh_gap,
+        bound=bound,
+        least_time=least_time,
+        least_impulse=least_impulse,
+    )
+    return run_optimum(_scenario(source), options)
 
 
 def bound(source: Source) -> Claim:
@@ -115,17 +179,35 @@ def compare(source: Source) -> Comparison:
     return run_comparison(_scenario(source))
 
 
-def tune(source: Source, **options: Any) -> Tuned:
+def tune(
+    source: Source,
+    *,
+    settle: Fraction | float | str | None = None,
+    norm: Literal["component", "euclidean"] | None = None,
+    law: str | None = None,
+    seed: int | None = None,
+) -> Tuned:
     """Search a law's parameters for the least peak that settles in time.
 
     Parameters
     ----------
     source : a scenario, or its file's path
-    **options : settle (s), norm, law (label), seed; the scenario's [tune] gives what is missing
+    settle : latest settling time, s, > 0: a text or fraction is exact, a float means its shortest decimal
+    norm : of the peak that is made small
+    law : label; the first law without one
+    seed : of the search, >= 0
+
+    What is None comes from the scenario's [tune].
+
+    Raises
+    ------
+    InputError
+        If a value cannot be taken, there is no such law, or no settling time.
     """
     from .tune.run import run_tuning
 
-    return run_tuning(_scenario(source), **options)
+    time = None if settle is None else positive("settle", settle, "s")
+    return run_tuning(_scenario(source), settle=time, norm=norm, law=law, seed=seed)
 
 
 def certify(source: Source, *, bound: bool = False) -> Certification:
@@ -167,7 +249,7 @@ def report(
     author, date : for the title page
     """
     from ..reports.build import write_report
-    from .report.run import ReportOptions, run_report
+    from .report.run import run_report
 
     record = run_report(_scenario(source), ReportOptions(), date=date, author=author)
     return write_report(record, folder, force=force)

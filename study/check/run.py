@@ -12,29 +12,10 @@ from ...verify.schedule.excitation import excitation_claim
 from ...verify.schedule.facts import schedule_claims
 from ...verify.verdict import Claim
 from ..claims.counting import count, counted_keys, exit_code, sentence
+from ..options import CheckOptions
 from ..simulated_run import run_law, seen_in
 from .case import Case, CaseOptions
 from .workers import crew
-
-
-@final
-@dataclass(frozen=True, kw_only=True)
-class CheckOptions:
-    """What a check does beyond its claims.
-
-    Attributes
-    ----------
-    simulate : run every law from the initial state
-    margins : look for how far schedule and lambda may change before convergence is no longer certified
-    search : look for the worst start by simulation
-    workers : processes; more than 1 only from a program that guards its main module
-        (`if __name__ == "__main__"`). The result does not depend on it.
-    """
-
-    simulate: bool = True
-    margins: bool = True
-    search: bool = True
-    workers: int = 1
 
 
 @final

@@ -6,7 +6,6 @@ too: the others take from the same list whatever is next.
 
 from __future__ import annotations
 
-import signal
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -15,13 +14,13 @@ from heapq import heappop, heappush
 from multiprocessing import get_context
 from multiprocessing.pool import Pool
 from queue import Empty, SimpleQueue
-from threading import Lock, current_thread, main_thread
+from threading import Lock
 from typing import Any, final
 
 from ...models.types import Progress
 from ...scenario import LawChoice, Scenario
+from ..pool import ignore_interrupt, starting_workers
 from ..simulated_run import RunFigures
-from ..threads import one_thread_each
 from .case import CaseOptions, Decided, Findings, decide, findings, margins, samples
 
 START = 0.1
@@ -158,26 +157,7 @@ def crew(jobs: int, workers: int, tell: Progress) -> Iterator[WorkerPool]:
     if others < 1:
         yield WorkerPool(None, 0, jobs, tell)
         return
-    with one_thread_each():
-        with _ignore_sigint():  # new processes inherit it: no interrupt reaches them as they begin
-            pool = get_context("spawn").Pool(others, initializer=ignore_interrupt)
-        with pool:
-            yield WorkerPool(pool, others, jobs, tell)
-
-
-@contextmanager
-def _ignore_sigint() -> Iterator[None]:
-    """Ignore interrupts for a moment; only the main thread can."""
-    if current_thread() is not main_thread():
-        yield
-        return
-    handler = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, handler)
-
-
-def ignore_interrupt() -> None:
-    """An interrupt is for the parent, which ends its workers."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    with starting_workers():
+        pool = get_context("spawn").Pool(others, initializer=ignore_interrupt)
+    with pool:
+        yield WorkerPool(pool, others, jobs, tell)

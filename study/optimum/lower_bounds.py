@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from ...scenario import Scenario
 from ...verify.verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict
-from .run import NormKey, OptimumOptions, norm_keys, norm_of, transfer
+from ..options import NormKey, OptimumOptions
+from .run import norm_keys, norm_of, transfer
 
 if TYPE_CHECKING:
     from ...optim.bounds import LowerBound

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, Literal, final
+from typing import TYPE_CHECKING, final
 
 from ...models.types import Progress, silent
 from ...optim.norms import Euclidean, LargestComponent, Norm, ThrusterAxes
 from ...optim.problem import Terminal, TransferProblem, WindowProfile
 from ...scenario import Scenario
+from ..options import NormKey, OptimumOptions, SolverKey
 
 if TYPE_CHECKING:
     from ...optim.bounds import LowerBound
@@ -18,39 +19,12 @@ if TYPE_CHECKING:
     from ...optim.peak.search.explain import Explanation
     from ...optim.peak.search.options import LocalSolver
 
-NormKey = Literal["component", "euclidean", "thrusters"]
-SolverKey = Literal["auto", "fast", "reference"]
 INVERSION_ALLOWANCE = 1e-7
 """A checked history misses the end by up to 1e-8 rad, which this much of the peak more than covers."""
 
 
 class BoundInversionError(RuntimeError):
     """A feasible history below its certified bound: one of the two is wrong, and the run must stop."""
-
-
-@final
-@dataclass(frozen=True, kw_only=True)
-class OptimumOptions:
-    """What to solve beyond what the scenario says.
-
-    Attributes
-    ----------
-    norms : norms to solve in; empty for both, or the thrusters alone if the scenario names some
-    starts, seed : the multi-start search; None for the scenario's own
-    solver : "auto" is the fast one with the reference as fallback
-    mesh_gap : largest fraction of the peak that finer cells may still gain
-    bound : compute the certified lower bound beside each optimum
-    least_time, least_impulse : find the least transfer time, the least impulse, within the limit too
-    """
-
-    norms: tuple[NormKey, ...] = ()
-    starts: int | None = None
-    seed: int | None = None
-    solver: SolverKey = "auto"
-    mesh_gap: float = 1e-6
-    bound: bool = True
-    least_time: bool = False
-    least_impulse: bool = False
 
 
 @final

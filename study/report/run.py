@@ -3,10 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, field
-from multiprocessing import get_context
-from typing import final
 
 from ...models.types import Progress, silent
 from ...reports.join import join
@@ -14,29 +10,9 @@ from ...reports.record import Record
 from ...reports.values import thaw
 from ...scenario import Scenario
 from ..check.record import check_record
-from ..check.run import CheckOptions, CheckStudy, run_check
-from ..check.workers import ignore_interrupt
-from ..threads import one_thread_each
-
-
-@final
-@dataclass(frozen=True, kw_only=True)
-class ReportOptions:
-    """What a report holds beside the check.
-
-    Attributes
-    ----------
-    optimum : the least peak any controller could do with, for the scenario's final time
-    comparison : each law against the optimum for its own settling time
-    front, audit : False leaves out what the scenario's [report] asks for
-    check : what the check does beyond its claims; its `workers` share the points of a front too
-    """
-
-    optimum: bool = True
-    comparison: bool = True
-    front: bool = True
-    audit: bool = True
-    check: CheckOptions = field(default_factory=CheckOptions)
+from ..check.run import CheckStudy, run_check
+from ..options import OptimumOptions, ReportOptions
+from ..pool import executor_of
 
 
 def run_report(
@@ -73,7 +49,7 @@ def _further(scenario: Scenario, options: ReportOptions, tell: Progress, check: 
     """Records of the same input beside the check's."""
     if options.optimum:
         from ..optimum.record import optimum_record
-        from ..optimum.run import OptimumOptions, run_optimum
+        from ..optimum.run import run_optimum
 
         yield optimum_record(run_optimum(scenario, OptimumOptions(), _part(tell, 0.4, 0.5)))
     if options.comparison:
@@ -94,11 +70,7 @@ def _front(scenario: Scenario, workers: int) -> Record:
     from ..tune.run import front_record, run_front
 
     asked = scenario.report
-    context = get_context("spawn")
-    with (
-        one_thread_each(),
-        ProcessPoolExecutor(workers, mp_context=context, initializer=ignore_interrupt) as executor,
-    ):
+    with executor_of(workers) as executor:
         found = run_front(
             scenario,
             asked.front,
