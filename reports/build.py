@@ -9,7 +9,7 @@ from .content.blocks import Chapter, charts_of
 from .content.budget import thin
 from .content.chapters import chapters
 from .content.comparing import comparison_chapters
-from .content.drawn import drawings, pdf_figures
+from .content.figures import drawings, pdf_figures
 from .content.heading import Heading, comparison_heading, heading
 from .exports import export_files
 from .folder import read_extras, write_folder

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .blocks import Chart
-from .printable import printable
+from .escape import printable
 from .wording import short
 
 LONGEST = 300

@@ -17,7 +17,7 @@ from ..content.blocks import (
     charts_of,
     tables_of,
 )
-from ..content.drawn import LEGEND_LONGEST
+from ..content.figures import LEGEND_LONGEST
 from ..content.heading import Heading
 from ..content.names import FullNames
 from ..content.verdicts import claim_numbers

@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from ..content.blocks import Chapter
+from ..content.escape import font_folders, font_names
 from ..content.heading import Heading
 from ..content.names import FullNames
-from ..content.printable import font_folders, font_names
 from ..content.wording import short
-from .spoken import spoken, words
+from .blocks import spoken, words
 
 
 def pdf_document(heading: Heading, chapters: tuple[Chapter, ...], drawings: Mapping[str, bytes]) -> bytes:

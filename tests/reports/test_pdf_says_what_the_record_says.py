@@ -13,9 +13,9 @@ from intermit.reports.build import DRAWN_POINTS, report_files
 from intermit.reports.content.blocks import charts_of
 from intermit.reports.content.budget import thin
 from intermit.reports.content.chapters import chapters
-from intermit.reports.content.drawn import drawings, pdf_figures
+from intermit.reports.content.escape import directed, east_asian_font, printable
+from intermit.reports.content.figures import drawings, pdf_figures
 from intermit.reports.content.heading import heading
-from intermit.reports.content.printable import directed, east_asian_font, printable
 from intermit.reports.numbers import write
 from intermit.reports.pdf import pdf_document
 from intermit.reports.values import thaw

@@ -12,7 +12,7 @@ from typing import Any
 
 from ..numbers import unit_text
 from .blocks import Axis, Chart, Line
-from .printable import east_asian_font, font_names, printable
+from .escape import east_asian_font, font_names, printable
 from .ticks import log_ticks
 from .wording import short
 
@@ -103,6 +103,15 @@ def _figure(chart: Chart) -> Any:
     rows = -(-len(labels) // _columns(labels))
     bottom = 0.175 + 0.062 * rows
     axes = figure.add_axes((LEFT, bottom, 0.975 - LEFT, 0.965 - bottom))
+    handles = draw_chart(axes, chart)
+    _make_room(axes, bottom)
+    if labels:
+        _add_legend(figure, handles, labels)
+    return figure
+
+
+def draw_chart(axes: Any, chart: Chart) -> list[Any]:
+    """Draw a chart's lines, windows and axis names on matplotlib axes; a handle a line, for a legend."""
     axes.grid(visible=True)
     axes.set_axisbelow(True)
     for side in ("top", "right"):
@@ -116,12 +125,9 @@ def _figure(chart: Chart) -> Any:
         )
         axes.set_xlim(edges)
     _scale(axes, chart)
-    _make_room(axes, bottom)
     _name(axes.set_xlabel, chart.x)
     _name(axes.set_ylabel, chart.y)
-    if labels:
-        _add_legend(figure, handles, labels)
-    return figure
+    return handles
 
 
 def _draw(axes: Any, line: Line) -> Any:

@@ -21,9 +21,9 @@ from ..content.blocks import (
     Verbatim,
     Verdicts,
 )
-from ..content.drawn import LEGEND_LONGEST
+from ..content.escape import directed, printable
+from ..content.figures import LEGEND_LONGEST
 from ..content.names import LONGEST, FullNames
-from ..content.printable import directed, printable
 from ..content.studies import values_text
 from ..content.verdicts import claim_numbers, refutation
 from ..content.wording import shares, short
