@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from fractions import Fraction as F
 
 import numpy as np
+from intermit.models.closed_loop import body_values, close_loop
 from intermit.models.ensemble import MetricOptions, simulate_ensemble
 from intermit.models.laws import AdaptiveScaling, PersistenceFilter
 from intermit.models.rigid_body import RigidBody
@@ -14,7 +15,7 @@ from intermit.verify.filter.answer import FloorAnswer, answer
 from intermit.verify.filter.certify import FloorOptions
 from intermit.verify.filter.claims import reaches_far_enough
 from intermit.verify.filter.comparison import BodyBounds
-from intermit.verify.filter.convergence import envelope
+from intermit.verify.filter.over_time import BoundsOverTime, bounds_over_time
 from intermit.verify.filter.question import FloorQuestion
 from intermit.verify.filter.worst_found import _Shape
 
@@ -79,7 +80,7 @@ class Attack:
     ----------
     floor : certified floor over the least R simulated
     angle, rate, torque, settled : largest simulated over certified
-    decay : the same of angle, rate and 1/R against their bounds at each instant
+    decay : the same of angle, |Omega|_J, |w|, |g u| and 1/R against the record's bounds at each instant
     command, gain : the same of |u| while g > 0 and of kappa
     """
 
@@ -165,20 +166,11 @@ class Adversary:
         inside = shape.inside(states)
         assert inside.any()
         assert not np.isnan(m.filter_minimum[inside]).any()  # no run stopped early
-        # 4 asin(sqrt((1 - b0)/2)) = 4 asin(|(1 - b0, bv)|/2) loses no digits at either end
-        chord = np.linalg.norm(runs.states[:, :, :4] - [1, 0, 0, 0], axis=2) / 2
-        angle = 4 * np.arcsin(np.clip(chord, 0, 1))
-        speed = np.linalg.norm(runs.states[:, :, 4:7], axis=2)
         controller = {s.name: runs.states[:, :, 7 + i] for i, s in enumerate(q.law.controller_states)}
-        R = controller["R"]
         kappa = controller["k"].max(axis=1) if "k" in controller else 1 / m.filter_minimum
-        held = envelope(floor, times)
-        # what the simulation does not resolve, an error of 1e-9 of the first value, is no violation
-        now = [
-            (angle - 1e-9) / np.maximum(held["angle"], tiny),
-            (speed - 1e-9 * speed.max()) / np.maximum(held["rate"], tiny),
-            held["filter"] / R,
-        ]
+        seen = seen_over_time(q, shape.body, times, runs.states)
+        angle, speed = seen["angle_bound"], seen["speed_bound"]
+        now = over_time_ratios(bounds_over_time(floor, horizon), times, seen)
         # a run that ends outside its tolerances settles after the horizon, if at all
         settled = np.where(np.isnan(m.settling_time), float(horizon), m.settling_time)
         settled /= np.inf if bound.settling is None else max(bound.settling, tiny)
@@ -188,11 +180,43 @@ class Adversary:
             speed.max(axis=1) / max(bound.largest_rate, tiny),
             m.peak_euclidean / max(found.torque.applied, tiny),
             settled,
-            np.max(now, axis=(0, 2)),
+            np.max(list(now.values()), axis=(0, 2)),
             m.peak_commanded_euclidean / max(found.torque.commanded, tiny),
             kappa / max(found.torque.gain, tiny),
         ]
         return np.where(inside, np.stack(rows), 0.0)
+
+
+def seen_over_time(q: FloorQuestion, body: RigidBody, times, states) -> dict[str, np.ndarray]:
+    """What the record bounds over time along each run, by the bound's name, (N, T); states (N, T, n)."""
+    loop = close_loop(q.law)
+    function = loop.function("seen", loop.augmented_rate, loop.applied_torque)
+    columns = states.reshape(-1, states.shape[2]).T
+    known = np.tile([q.schedule.gain(times), q.schedule.gain_rate(times)], len(states))
+    constants = (np.tile(x[:, None], columns.shape[1]) for x in (loop.parameter_values(), body_values(body)))
+    Omega, torque = (np.asarray(x).T for x in function(columns, known, *constants))
+    # 4 asin(sqrt((1 - b0)/2)) = 4 asin(|(1 - b0, bv)|/2) loses no digits at either end
+    chord = np.linalg.norm(states[:, :, :4] - [1, 0, 0, 0], axis=2) / 2
+    weighted = np.sqrt(np.einsum("ni,ij,nj->n", Omega, body.inertia, Omega))
+    return {
+        "filter_floor": states[:, :, 7 + [s.name for s in q.law.controller_states].index("R")],
+        "angle_bound": 4 * np.arcsin(np.clip(chord, 0, 1)),
+        "rate_bound": weighted.reshape(chord.shape),
+        "speed_bound": np.linalg.norm(states[:, :, 4:7], axis=2),
+        "torque_bound": np.linalg.norm(torque, axis=1).reshape(chord.shape),
+    }
+
+
+def over_time_ratios(bounds: BoundsOverTime, times, seen: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """What was seen over its bound (a floor: the bound over it) at each time; more than 1 is a violation."""
+    cell = np.searchsorted(bounds.time, times, side="right") - 1
+    ratios = {"filter_floor": bounds.filter_floor[cell] / seen["filter_floor"]}
+    for name, values in seen.items():
+        if name != "filter_floor":
+            # what the simulation does not resolve, an error of 1e-9 of the first value, is no violation
+            unresolved = 1e-9 if name == "angle_bound" else 1e-9 * values.max()
+            ratios[name] = (values - unresolved) / np.maximum(getattr(bounds, name)[cell], 1e-300)
+    return ratios
 
 
 def attack(seed: int) -> Attack:

@@ -121,20 +121,7 @@ def torque_chapter(record: Record) -> Chapter | None:
             [(r, _components(r, "torque", axes)) for r in runs],
         )
     )
-    bounds = _certified(record, "torque_bound", ": certified bound")
-    if bounds:
-        alt = "Certified bounds on the applied torque over time."
-        applied.append(
-            Chart(
-                "torque-bound",
-                "Certified torque bounds",
-                TIME,
-                Axis("bound", "N m"),
-                tuple(bounds),
-                alt,
-                shaded(record),
-            )
-        )
+    applied += _envelopes(record, "torque")
     commanded = list(
         _beside(
             record,
@@ -197,7 +184,7 @@ def _by_case(record: Record, role: str, label: str) -> dict[str, list[Line]]:
     return found
 
 
-def _certified(record: Record, role: str, suffix: str = "") -> list[Line]:
+def _certified(record: Record, role: str) -> list[Line]:
     """Collect the certified curves of one role, one per law that has it, in the law's colour, dashed."""
     lines = []
     for i, case in enumerate(record.sections.get("cases", ())):
@@ -205,7 +192,7 @@ def _certified(record: Record, role: str, suffix: str = "") -> list[Line]:
             names = certificate.get("arrays", {})
             if role in names:
                 t, values = record.array(names["time"]), record.array(names[role])
-                lines.append(Line(case["label"] + suffix, t, values, colour=i, dashed=True))
+                lines.append(Line(case["label"], t, values, colour=i, dashed=True))
     return lines
 
 
@@ -233,7 +220,11 @@ def attitude_chapter(record: Record) -> Chapter | None:
         *_beside(record, "quaternion", "Attitude", Axis("β"), quaternion),
         *_envelopes(record, "angle"),
     ]
-    rates = [*_beside(record, "rate", "Rate", Axis("ω", "rad/s"), rate), *_envelopes(record, "rate")]
+    rates = [
+        *_beside(record, "rate", "Rate", Axis("ω", "rad/s"), rate),
+        *_envelopes(record, "speed"),
+        *_envelopes(record, "rate"),
+    ]
     blocks: list[Block] = []
     bodies = _bodies(record, runs)
     if bodies:
@@ -245,7 +236,9 @@ def attitude_chapter(record: Record) -> Chapter | None:
 
 def _envelopes(record: Record, what: str) -> Iterator[Chart]:
     words = {
+        "torque": ("Certified bound on the applied torque |g u|", "N m"),
         "angle": ("Certified bound on the error angle", "rad"),
+        "speed": ("Certified bound on the rate |ω|", "rad/s"),
         "rate": ("Certified bound on sqrt(Ω' J Ω)", "kg^1/2 m rad/s"),
     }[what]
     lines = _certified(record, f"{what}_bound")

@@ -25,6 +25,7 @@ UNITS = {
     "filter_floor": "s",
     "angle_bound": "rad",
     "rate_bound": "kg^1/2 m rad/s",
+    "speed_bound": "rad/s",
     "storage": "kg m^2/s",
     "storage_rate": "kg m^2/s^2",
     "storage_bound": "kg m^2/s",

@@ -14,6 +14,7 @@ from ...models.types import Progress, silent
 from ...scenario import LawChoice, Scenario
 from ...verify.filter.answer import FloorAnswer, answer
 from ...verify.filter.claims import torque_quantities
+from ...verify.filter.over_time import BoundsOverTime, bounds_over_time
 from ...verify.filter.recognise import follows_filter
 from ...verify.filter.torque_excess import refuted_limit
 from ...verify.lyapunov.claims import lyapunov_claims
@@ -22,7 +23,6 @@ from ...verify.schedule.filter_start import filter_start_claim
 from ...verify.verdict import Claim, Quantity, Verdict
 from ..claims.keys import CLAIM_KEYS, order_of
 from ..simulated_run import Run, RunFigures
-from .curves import CertifiedCurves, certified_curves
 from .filter_question import floor_question, is_certified
 from .margins import convergence_margins, with_margins
 from .sampled import reference_floor, sample_law
@@ -60,7 +60,7 @@ class Findings:
 
     claims: tuple[Claim, ...]
     reference_floor: Fraction | None
-    curves: CertifiedCurves | None
+    curves: BoundsOverTime | None
     samples: SampledDerivative | None
     notes: tuple[str, ...] = ()
 
@@ -95,7 +95,7 @@ class Decided:
 
     claims: tuple[Claim, ...]
     reference_floor: Fraction | None
-    curves: CertifiedCurves | None
+    curves: BoundsOverTime | None
     note: str
     has_margins: bool
 
@@ -133,7 +133,7 @@ def decide(
     return Decided(
         tuple(claims.values()),
         reference_floor(scenario, law, claims.get("filter.floor"), seen),
-        certified_curves(found.floor, float(scenario.horizon)) if found.floor is not None else None,
+        bounds_over_time(found.floor, scenario.horizon) if found.floor is not None else None,
         floor_note(scenario.schedule, found.converged),
         options.margins and claims["convergence"].verdict is Verdict.PROVED,
     )

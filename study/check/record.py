@@ -187,7 +187,7 @@ def case_entry(scenario: Scenario, case: Case, key: str) -> tuple[dict[str, Any]
     curves = case.findings.curves
     if curves is not None:
         name = f"{key}.certified"
-        arrays |= curves.arrays(name)
+        arrays |= {f"{name}.{role}": values for role, values in vars(curves).items()}
         floor = next(claim for claim in case.claims if claim.key == "filter.floor")
         certificates.append(
             {
@@ -195,7 +195,7 @@ def case_entry(scenario: Scenario, case: Case, key: str) -> tuple[dict[str, Any]
                 "label": f"certified bounds, {case.choice.label}",
                 "claim": floor.statement,
                 "quantities": [quantity_entry(q) for q in floor.quantities],
-                "arrays": curves.roles(name),
+                "arrays": {role: f"{name}.{role}" for role in vars(curves)},
                 "recheck": f"intermit check {scenario.path.name}",
                 "notes": ["Each value holds from its time to the next."],
             }

@@ -19,10 +19,10 @@ from typing import final
 import numpy as np
 
 from ...models.schedule import Schedule
-from ...models.types import Array
 from ..exact.balls import sqrt_below
 from .certify import FilterLowerBound
 from .flowpipe import Box, Flowpipe
+from .over_time import angle_above
 from .torque_bound import OUTWARD, greatest_bv
 
 
@@ -82,7 +82,7 @@ def analyse_convergence(floor: FilterLowerBound, *, attitude: float, rate: float
         ratio=max((max(t.ratios.values(), default=0.0) for t in complete), default=1.0),
         envelope_start=max((t.start for t in complete), default=Fraction(0)),
         settling=None if any(t is None for t in times) else max(t for t in times if t is not None),
-        largest_angle=_angle(gaps),
+        largest_angle=angle_above(gaps),
         largest_rate=max(r.rate for row in reaches for r in row),
     )
 
@@ -91,11 +91,6 @@ def settling(flowpipe: Flowpipe, floor: FilterLowerBound, *, attitude: float, ra
     """Time after which one bin of a floor for all time is within the tolerances, s; inf where unknown."""
     found = _settled(list(_reaches(floor, flowpipe)), floor.schedule, None, attitude, rate)
     return inf if found is None or flowpipe.tail is None else found
-
-
-def _angle(gap: float) -> float:
-    """Bound of 2 acos(b0), rad, for 1 - b0 <= gap: 4 asin(sqrt(gap/2)), exact where gap is small."""
-    return float(4 * np.arcsin(min(np.sqrt(gap / 2) * OUTWARD, 1.0)) * OUTWARD)
 
 
 def _reaches(floor: FilterLowerBound, flowpipe: Flowpipe) -> Iterator[Reach]:
@@ -137,40 +132,3 @@ def _settled(
     if horizon is not None and last >= float(horizon) * (1 - 1e-12):
         return None
     return nextafter(last * OUTWARD, inf)
-
-
-def envelope(floor: FilterLowerBound, times: Array) -> dict[str, Array]:
-    """Bounds at given times, for figures: error angle (rad), |w| (rad/s), least R (s).
-
-    Each time gets the worst of the boxes that hold it; beyond the covered time the values are NaN.
-    """
-    result = {name: np.full(times.shape, np.nan) for name in ("angle", "rate", "filter")}
-    root = sqrt_below(floor.bounds.least)
-    for flowpipe in floor.flowpipes:
-        for box, start, stop, scale in _unrolled(floor, flowpipe, float(times.max(initial=0.0))):
-            inside = (times >= start) & (times <= stop)
-            if not inside.any():
-                continue
-            reach = _reach(box, root, None if scale == 1.0 else scale)
-            result["angle"][inside] = np.fmax(result["angle"][inside], _angle(box.cosine_gap * scale**2))
-            result["rate"][inside] = np.fmax(result["rate"][inside], reach.rate * scale)
-            result["filter"][inside] = np.fmin(result["filter"][inside], box.filter_low)
-    if floor.horizon is not None:  # beyond it some of the flowpipes are silent
-        for values in result.values():
-            values[times > float(floor.horizon)] = np.nan
-    return result
-
-
-def _unrolled(
-    floor: FilterLowerBound, flowpipe: Flowpipe, end: float
-) -> Iterator[tuple[Box, float, float, float]]:
-    for box in flowpipe.boxes:
-        yield box, box.start, box.stop, 1.0
-    if flowpipe.tail is None or floor.schedule.period is None:
-        return
-    period, ratio = float(floor.schedule.period), max(flowpipe.tail.ratios.values(), default=0.0)
-    n = 0
-    while float(flowpipe.tail.start) + n * period <= end:
-        for box in flowpipe.tail_boxes:
-            yield box, box.start + n * period, box.stop + n * period, ratio**n
-        n += 1

@@ -15,7 +15,7 @@ bounds every component. Valid, and loose: 3 to 15 times the largest torque seen.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import final
 
 import numpy as np
@@ -24,6 +24,7 @@ from ...models.types import Array
 from ..exact.balls import fraction_above, fraction_below, sqrt_above, sqrt_below
 from .adaptive import AdaptiveSystem
 from .certify import FilterLowerBound
+from .comparison import BodyBounds
 from .flowpipe import Box, LawComparison
 from .persistence import PersistenceSystem
 
@@ -52,11 +53,21 @@ class TorqueBound:
 
 @final
 @dataclass(frozen=True)
-class _Columns:
-    """Boxes as arrays."""
+class BoxColumns:
+    """Boxes as arrays, (n,) each.
+
+    Attributes
+    ----------
+    S, y : upper bounds of 1 - b0 and of |Omega|_J, kg^1/2 m rad/s
+    low_filter, R : bounds of R from below and from above, s
+    low, high : bounds of kappa, 1/s
+    g, slope_low, slope_high : bound of |g|, bounds of g', 1/s
+    start, stop : s
+    """
 
     S: Array
     y: Array
+    low_filter: Array
     R: Array
     low: Array
     high: Array
@@ -64,15 +75,29 @@ class _Columns:
     slope_low: Array
     slope_high: Array
     start: Array
+    stop: Array
 
     @classmethod
-    def of(cls, boxes: Iterable[Box]) -> _Columns:
+    def of(cls, boxes: Iterable[Box]) -> BoxColumns:
+        """Gather boxes, at least one."""
         rows = [
-            (b.cosine_gap, b.weighted_rate, b.filter_high, b.gain_low, b.gain_high,
-             b.gain_max, b.slope_low, b.slope_high, b.start)
+            (b.cosine_gap, b.weighted_rate, b.filter_low, b.filter_high, b.gain_low, b.gain_high,
+             b.gain_max, b.slope_low, b.slope_high, b.start, b.stop)
             for b in boxes
         ]  # fmt: skip
         return cls(*np.array(rows).T)
+
+    def later(self, shift: float, scale: float) -> BoxColumns:
+        """The same `shift` s later, s = sqrt(S) and y at most `scale` times theirs, S and y rounded up."""
+        if scale == 1.0:
+            return replace(self, start=self.start + shift, stop=self.stop + shift)
+        return replace(
+            self,
+            S=np.nextafter(self.S * scale * scale * OUTWARD, np.inf),
+            y=np.nextafter(self.y * scale, np.inf),
+            start=self.start + shift,
+            stop=self.stop + shift,
+        )
 
 
 def greatest_bv(S: Array) -> Array:
@@ -85,20 +110,8 @@ def greatest_bv(S: Array) -> Array:
 def torque_bound(floor: FilterLowerBound) -> TorqueBound:
     """Bound the torque over the time the floor covers, for every trajectory of its set."""
     boxes = [box for w in floor.flowpipes for box in (*w.boxes, *w.tail_boxes)]
-    c = _Columns.of(boxes)
-    least, greatest = fraction_below(floor.bounds.least), fraction_above(floor.bounds.greatest)
-    root = sqrt_above(floor.bounds.greatest)
-    spin = c.y / sqrt_below(floor.bounds.least)
-    n = greatest_bv(c.S)
-    q_low, q_high = _coefficient(floor.flowpipes[0].system, c)
-    commanded = (
-        np.maximum(np.abs(q_low), np.abs(q_high)) * greatest * n
-        + 2 * c.g * c.high * n * root * c.y
-        + 2 * c.g**3 * c.high**2 * (greatest - least) * n**2
-        + c.g * c.high * greatest * spin
-        + c.g * c.high * root * c.y
-    ) * OUTWARD
-    applied = commanded * c.g * OUTWARD
+    c = BoxColumns.of(boxes)
+    applied, commanded = torque_bounds(floor.flowpipes[0].system, floor.bounds, c)
     # in an off-window u is not applied and the law's u only mirrors g = 0
     inside = c.g > 0
     worst = int(np.argmax(applied))
@@ -110,7 +123,24 @@ def torque_bound(floor: FilterLowerBound) -> TorqueBound:
     )
 
 
-def _coefficient(system: LawComparison, c: _Columns) -> tuple[Array, Array]:
+def torque_bounds(system: LawComparison, bounds: BodyBounds, c: BoxColumns) -> tuple[Array, Array]:
+    """Bounds of |g u| and of |u| on each box, N m, (n,) each."""
+    least, greatest = fraction_below(bounds.least), fraction_above(bounds.greatest)
+    root = sqrt_above(bounds.greatest)
+    spin = c.y / sqrt_below(bounds.least)
+    n = greatest_bv(c.S)
+    q_low, q_high = _coefficient(system, c)
+    commanded = (
+        np.maximum(np.abs(q_low), np.abs(q_high)) * greatest * n
+        + 2 * c.g * c.high * n * root * c.y
+        + 2 * c.g**3 * c.high**2 * (greatest - least) * n**2
+        + c.g * c.high * greatest * spin
+        + c.g * c.high * root * c.y
+    ) * OUTWARD
+    return commanded * c.g * OUTWARD, commanded
+
+
+def _coefficient(system: LawComparison, c: BoxColumns) -> tuple[Array, Array]:
     """Bounds of q; each term's interval, added, then widened by its rounding."""
     g, low, high = c.g, c.low, c.high
     slope = [-4 * s * k for s in (c.slope_low, c.slope_high) for k in (low, high)]
