@@ -24,6 +24,14 @@ KNOWN = 1000
 """A filter state is known while it is above this many absolute tolerances: to some 0.1 per cent."""
 MAX_EVALUATIONS = 2_000_000
 """Right-hand sides of one run, some 10 microseconds each."""
+PACE = 50_000
+"""Right-hand sides after which a run's pace is looked at."""
+TINY = 1e-300
+"""Keeps a quotient by no progress finite."""
+HOPELESS = 50
+"""A run that at its pace would take this many times MAX_EVALUATIONS stops at once."""
+LAST_STEPS, GROWTH = 50, 10.0
+"""A state that grew so much within the last steps before their size vanished escapes; else they are stiff."""
 
 
 class SimulationError(RuntimeError):
@@ -106,7 +114,7 @@ def simulate(
         if phase.resets:
             state = reset(state, loop.parameter_values(), body_values(body))
         if switching is None:
-            segments.append(_integrate_phase(field, phase, state, method))
+            segments.append(_integrate_phase(field, phase, state, method, float(horizon)))
         else:
             segments += _integrate_switching(switching, phase, state, method)
         state = segments[-1].end_state
@@ -128,6 +136,7 @@ class _RightHandSide:
     def __init__(self, loop: ClosedLoop, body: RigidBody, degree: int) -> None:
         function = phase_field(loop, degree)
         self.count = 0
+        self._seen: float | None = None
         self.state_names = loop.state_names
         self._tau = np.zeros(1)
         self._state = np.zeros(loop.state.shape[0])
@@ -142,19 +151,16 @@ class _RightHandSide:
             self._buffer.set_arg(i, value.data)
         self._buffer.set_res(0, self._rate.data)
 
-    def in_phase(self, phase: Phase) -> Callable[[float, Array], Array]:
-        """Right-hand side (t, x) -> x' with the phase's signals."""
+    def in_phase(self, phase: Phase, horizon: float) -> Callable[[float, Array], Array]:
+        """Right-hand side (t, x) -> x' with the phase's signals; it stops a run that goes on without end."""
         # CasADi matrices are column-major, numpy's row-major: the transpose has the right layout
         self._coefficients[...] = phase.coefficient_array(self._degree).T
         origin = float(phase.origin)
 
         def evaluate(t: float, x: Array) -> Array:
             self.count += 1
-            if self.count > MAX_EVALUATIONS:
-                raise SimulationError(
-                    f"the run stopped at t = {t:.6g} s after {MAX_EVALUATIONS} right-hand sides: its motion "
-                    "is far quicker than its horizon is long; give a shorter horizon, or slower parameters"
-                )
+            if self.count % PACE == 0 or self.count > MAX_EVALUATIONS:
+                self._require_pace(t, horizon)
             self._tau[0] = t - origin
             self._state[:] = x
             self._evaluate()
@@ -162,17 +168,32 @@ class _RightHandSide:
 
         return evaluate
 
+    def _require_pace(self, t: float, horizon: float) -> None:
+        """Stop a run that has used its right-hand sides, or will by far at the pace of its last ones."""
+        before, self._seen = self._seen, t
+        to_come = 0.0 if before is None else PACE * (horizon - t) / max(t - before, TINY)
+        if self.count <= MAX_EVALUATIONS and to_come <= HOPELESS * MAX_EVALUATIONS:
+            return
+        pace = f", and would take {to_come:.1g} more" if to_come > self.count else ""
+        raise SimulationError(
+            f"the run stopped at t = {t:.6g} s after {min(self.count, MAX_EVALUATIONS)} right-hand sides"
+            f"{pace}: its quickest motion is far quicker than its horizon is long; give a shorter horizon, "
+            "or slower parameters"
+        )
 
-def _integrate_phase(field: _RightHandSide, phase: Phase, state: Array, method: DOP853) -> Segment:
+
+def _integrate_phase(
+    field: _RightHandSide, phase: Phase, state: Array, method: DOP853, horizon: float
+) -> Segment:
     from scipy.integrate import solve_ivp
 
     start, end = float(phase.start), float(phase.end)
     solution = solve_ivp(
-        field.in_phase(phase), (start, end), state, method="DOP853", rtol=method.rtol, atol=method.atol,
-        dense_output=True,
+        field.in_phase(phase, horizon), (start, end), state,
+        method="DOP853", rtol=method.rtol, atol=method.atol, dense_output=True,
     )  # fmt: skip
     if not solution.success or not np.all(np.isfinite(solution.y[:, -1])):
-        raise SimulationError(_why_stopped(field.state_names, solution.t[-1], solution.y[:, -1]))
+        raise SimulationError(_why_stopped(field.state_names, solution.t[-1], solution.y))
     return Segment(phase, solution.t, solution.y, solution.sol)
 
 
@@ -200,13 +221,21 @@ def _require_known_gain(loop: ClosedLoop, segment: Segment, method: DOP853) -> N
         )
 
 
-def _why_stopped(names: tuple[str, ...], time: float, state: Array) -> str:
+def _why_stopped(names: tuple[str, ...], time: float, states: Array) -> str:
+    """Say why, from the steps (n, m) up to there."""
+    state = states[:, -1]
     if not np.all(np.isfinite(state)):
         return f"the run stopped at t = {time:.6g} s: a state is no longer a number"
     largest = int(np.argmax(np.abs(state)))
+    before = abs(states[largest, max(0, states.shape[1] - LAST_STEPS)])
+    if abs(state[largest]) > GROWTH * before:
+        return (
+            f"the run stopped at t = {time:.6g} s: the step size vanished while {names[largest]} grew to "
+            f"{state[largest]:.3g} (a state that escapes in finite time does this)"
+        )
     return (
-        f"the run stopped at t = {time:.6g} s: the step size vanished with {names[largest]} = "
-        f"{state[largest]:.3g} (a state that escapes in finite time does this)"
+        f"the run stopped at t = {time:.6g} s: the steps it needs are below the spacing of numbers there, "
+        "and no state grows: its quickest motion is too quick (stiff); lower the law's gains and rates"
     )
 
 

@@ -1,6 +1,7 @@
 """A run obeys the closed loop's exact relations, conserves what it must, and meets its tolerance."""
 
 import itertools
+from dataclasses import replace
 from fractions import Fraction as F
 
 import numpy as np
@@ -17,6 +18,7 @@ from intermit.models.simulation import (
     simulate,
     torque_metrics,
 )
+from intermit.models.simulation.integrate import _why_stopped
 from problems import ADAPTIVE, CONVERGED_FILTER_FLOOR, J1, J2, PERSISTENCE, REST, TILTED, paper_schedule
 
 RATE = np.array([0.05, -0.03, 0.04])
@@ -134,8 +136,22 @@ def test_saturation_holds_and_changes_the_run():
 
 def test_escape_under_saturation_is_an_error_naming_the_state():
     """With the torque held at 0.5 N m the adaptive gain runs away like k' ~ k^2."""
-    with pytest.raises(SimulationError, match=r"stopped at t = 9\.78.* k = "):
+    with pytest.raises(SimulationError, match=r"stopped at t = 9\.78.* k grew to .*finite time"):
         run(ADAPTIVE, saturation=Saturation(F("0.5")))
+
+
+def test_a_stiff_motion_is_not_said_to_escape():
+    """Steps vanish for both; only a state that grew escapes."""
+    still = np.ones((2, 80))
+    grown = np.vstack([np.ones(80), np.geomspace(1, 1e9, 80)])
+    assert "stiff" in _why_stopped(("b0", "k"), 3.0, still)
+    assert "k grew to 1e+09" in _why_stopped(("b0", "k"), 3.0, grown)
+
+
+@pytest.mark.parametrize("decay", ["1e7", "1e12"])
+def test_a_filter_far_quicker_than_the_run_stops_by_its_pace(decay):
+    with pytest.raises(SimulationError, match=r"after 100000 right-hand sides, and would take 1e\+\d+ more"):
+        run(replace(PERSISTENCE, lambda_=F(decay)))
 
 
 def test_filter_minimum_is_below_every_sample():

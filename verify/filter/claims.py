@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from math import degrees
+from math import degrees, isfinite
 from typing import Any, final
 
 from ..certificates.format import Certificate
+from ..schedule.zero_runs import longest_zero_run
 from ..verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict
 from .certify import FilterLowerBound
 from .converged import ConvergedFloor
@@ -23,6 +24,8 @@ PAGE = "docs/theory-floor.md"
 NO_PROOF_STEP = (
     "write the law with the equations of docs/theory-floor.md: + - * / alone, no limit on the torque in it"
 )
+HOPELESS_EXPONENT = 30
+"""Off-time over the filter's time constant beyond which no step is proved: R decays by 1e-13 and more."""
 MUELLER = "comparison theorem of Mueller and Walter; docs/theory-floor.md"
 
 
@@ -94,14 +97,10 @@ def convergence_claim(facts: FloorFacts, found: Convergence | None, attitude: fl
     """Claim "convergence": error angle and rate go to zero within a proved envelope."""
     title, floor = "attitude and rate converge", facts.floor
     general = "error angle and rate go to zero from every start of the initial set"
-    if floor is None or found is None:
-        return _undecided(
-            "convergence",
-            title,
-            general,
-            facts.no_system,
-            NO_PROOF_STEP,
-        )
+    if floor is None:
+        return _undecided("convergence", title, general, facts.no_system, NO_PROOF_STEP)
+    if found is None:
+        return _undecided("convergence", title, general, *_shortfall(floor))
     quantities = _reach_quantities(floor, found)
     if floor.schedule.period is None:
         reason = "the table is finite: after its last window nothing acts, so no limit exists to speak of"
@@ -146,19 +145,22 @@ def torque_claim(
 ) -> Claim:
     """Claim "torque.limit": the applied torque g u stays within the limit.
 
-    `seen` is the largest applied torque of a simulated run in that norm, N m, for the reason.
+    `seen` is the largest applied torque of the scenario's own run in that norm, N m, for the reason.
     """
     title = "applied torque within its limit"
     floor = facts.floor
     statement = f"|g u| <= {float(limit):g} N m ({norm})"
-    if floor is None or bound is None:
+    if floor is None:
         return _undecided("torque.limit", title, statement, facts.no_system, NO_PROOF_STEP)
     where = f"from every start with {floor.initial.description}"
-    quantities = torque_quantities(bound)
-    if not reaches_far_enough(floor):
+    if bound is None or not reaches_far_enough(floor):
         reason, step = _shortfall(floor)
         return _undecided("torque.limit", title, f"{statement} {where}", reason, step)
     statement += f" {_covered(floor)}, {where}"
+    quantities = torque_quantities(bound)
+    if not isfinite(bound.applied):
+        reason = f"the certified floor of R, {_down(floor.value)} s, lets the gain grow beyond all numbers"
+        return _undecided("torque.limit", title, statement, reason, _filter_step(floor), quantities)
     if Fraction(bound.applied) <= limit:
         margin = Quantity(
             "torque_reserve", float(limit) - bound.applied, float(limit) - bound.applied, "N m", "reserve"
@@ -173,16 +175,31 @@ def torque_claim(
             margins=(margin,),
             source=PAGE,
         )
-    reason = f"the certified bound {_up(bound.applied)} N m, 3 to 15 times too cautious, exceeds the limit"
-    if seen is not None:
-        word = "exceeds it too" if seen > limit else "does not"
-        reason += f"; the largest torque of the simulated run, {seen:.4g} N m, {word}"
+    reason = f"the certified bound {_up(bound.applied)} N m exceeds the limit"
+    largest = _largest_found(facts, norm, seen)
+    if largest is not None:
+        value, whose = largest
+        word = "exceeds it too" if value > limit else "does not"
+        reason += f"; the largest torque {whose}, {value:.4g} N m, {word}"
+        if value > 0:
+            reason += f" (the bound is {bound.applied / value:.2g} times it)"
     step = "narrow the initial set, lower the gains (lambda, gamma, k0), or raise the limit"
     return _undecided("torque.limit", title, statement, reason, step, quantities)
 
 
+def _largest_found(facts: FloorFacts, norm: str, seen: float | None) -> tuple[float, str] | None:
+    """Largest torque that this study saw, N m in that norm, and whose it is."""
+    found = [] if seen is None else [(seen, "of the simulated run")]
+    if facts.worst is not None:
+        peaks = {"component": facts.worst.peak_component, "euclidean": facts.worst.peak_euclidean}
+        found.append((peaks[norm], f"of {facts.worst.runs} runs over the set"))
+    return max(found, default=None)
+
+
 def torque_quantities(bound: TorqueBound) -> tuple[Quantity, ...]:
-    """Torque bounds as quantities."""
+    """Torque bounds as quantities; none where no finite bound is known."""
+    if not isfinite(bound.applied):
+        return ()
     return (
         Quantity(
             "torque_bound_applied",
@@ -220,14 +237,14 @@ def _other_answers(facts: FloorFacts) -> tuple[Quantity, ...]:
     found = []
     if facts.converged is not None:
         c = facts.converged
-        label = "R_min converged, no run stays above it"
+        label = "R_min converged, no run stays above it for ever"
         found.append(Quantity("converged_floor", c.low, c.high, "s", label, True))
     if facts.along_run is not None:
         value, end = facts.along_run
         label = f"R_min along the simulated run to {end:g} s"
         found.append(Quantity.point("floor_along_run", value, "s", digits=7, label=label))
     if facts.worst is not None:
-        label = f"R_min worst found in {facts.worst.runs} runs"
+        label = f"R_min worst found in {facts.worst.runs} runs over the set to {facts.worst.horizon:g} s"
         found.append(Quantity.point("worst_floor_found", facts.worst.value, "s", digits=7, label=label))
     return tuple(found)
 
@@ -276,6 +293,13 @@ def _shortfall(floor: FilterLowerBound) -> tuple[str, str]:
             "for all of them at once",
             "take k0 > 0",
         )
+    exponent = _idle_exponent(floor)
+    if floor.failed_at is not None and exponent > HOPELESS_EXPONENT:
+        return (
+            f"while no window is open R decays by exp(-{exponent:.3g}) (lambda times the longest off-time), "
+            "and the gain of the next window is one over what is left",
+            _filter_step(floor),
+        )
     if floor.failed_at is not None and not floor.lost_angle:
         return (
             f"no further step could be proved from t = {float(floor.failed_at):.4g} s",
@@ -292,6 +316,18 @@ def _shortfall(floor: FilterLowerBound) -> tuple[str, str]:
         f"R >= {_down(floor.value)} s is certified on [0, {end:g}] s only: no repeating bound was found",
         "allow more periods, or narrow the initial set",
     )
+
+
+def _idle_exponent(floor: FilterLowerBound) -> float:
+    """Lambda times the longest stretch without thrust: R decays by exp of minus it."""
+    gap = longest_zero_run(floor.schedule)
+    decay = floor.law.parameters.get("lambda", Fraction(0))
+    return 0.0 if gap is None else float(decay * (gap.off - gap.on))
+
+
+def _filter_step(floor: FilterLowerBound) -> str:
+    decay = float(floor.law.parameters.get("lambda", Fraction(0)))
+    return f"lower lambda (now {decay:g} 1/s) or shorten the longest off-time"
 
 
 def _undecided(
@@ -332,4 +368,6 @@ def _shown(value: float, direction: int) -> str:
     from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 
     rounding = ROUND_CEILING if direction > 0 else ROUND_FLOOR
-    return f"{Context(prec=5, rounding=rounding).create_decimal(Decimal(value)):f}"
+    rounded = Context(prec=5, rounding=rounding).create_decimal(Decimal(value))
+    plain = rounded == 0 or -6 < rounded.adjusted() < 12
+    return f"{rounded:f}" if plain else f"{rounded:e}".replace("e+", "e")

@@ -9,7 +9,7 @@ With w = Omega - 2 g^2 kappa bv and bv' = (b0 Omega + bv x Omega)/2 - g^2 kappa 
 n = |bv|, |Omega| <= y/sqrt(Jmin), |J Omega| <= sqrt(Jmax) y, |b0 Omega + bv x Omega| <= |Omega|,
 |bv x J bv| <= n^2 (Jmax - Jmin)/2 bound each term. Persistence filter: kappa' = lambda kappa -
 g^2 kappa^2 (1 + b0); adaptive scaling: 0 <= kappa' = gamma R g^2 f. The norm is Euclidean and so
-bounds every component. Valid, and loose: 3 to 15 times the largest torque seen.
+bounds every component. Valid, and loose: a claim says by how much the study's largest torque is less.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ OUTWARD = 1 + 1e-12
 @final
 @dataclass(frozen=True)
 class TorqueBound:
-    """Euclidean torque bounds over the time covered by the floor.
+    """Euclidean torque bounds over the time covered by the floor; infinite where none is known.
 
     Attributes
     ----------
@@ -112,32 +112,36 @@ def torque_bound(floor: FilterLowerBound) -> TorqueBound:
     boxes = [box for w in floor.flowpipes for box in (*w.boxes, *w.tail_boxes)]
     c = BoxColumns.of(boxes)
     applied, commanded = torque_bounds(floor.flowpipes[0].system, floor.bounds, c)
-    # in an off-window u is not applied and the law's u only mirrors g = 0
-    inside = c.g > 0
     worst = int(np.argmax(applied))
     return TorqueBound(
         applied=float(applied[worst]),
-        commanded=float(np.max(commanded, where=inside, initial=0.0)),
+        commanded=float(np.max(commanded, initial=0.0)),
         instant=float(c.start[worst]),
         gain=float(c.high.max()),
     )
 
 
 def torque_bounds(system: LawComparison, bounds: BodyBounds, c: BoxColumns) -> tuple[Array, Array]:
-    """Bounds of |g u| and of |u| on each box, N m, (n,) each."""
+    """Bounds of |g u| and of |u| on each box, N m, (n,) each; infinite where the gain's are beyond numbers.
+
+    Both are zero where g is: there u is not applied, and the law's u only mirrors g = 0.
+    """
     least, greatest = fraction_below(bounds.least), fraction_above(bounds.greatest)
     root = sqrt_above(bounds.greatest)
     spin = c.y / sqrt_below(bounds.least)
     n = greatest_bv(c.S)
-    q_low, q_high = _coefficient(system, c)
-    commanded = (
-        np.maximum(np.abs(q_low), np.abs(q_high)) * greatest * n
-        + 2 * c.g * c.high * n * root * c.y
-        + 2 * c.g**3 * c.high**2 * (greatest - least) * n**2
-        + c.g * c.high * greatest * spin
-        + c.g * c.high * root * c.y
-    ) * OUTWARD
-    return commanded * c.g * OUTWARD, commanded
+    with np.errstate(over="ignore", invalid="ignore"):
+        q_low, q_high = _coefficient(system, c)
+        commanded = (
+            np.maximum(np.abs(q_low), np.abs(q_high)) * greatest * n
+            + 2 * c.g * c.high * n * root * c.y
+            + 2 * c.g**3 * c.high**2 * (greatest - least) * n**2
+            + c.g * c.high * greatest * spin
+            + c.g * c.high * root * c.y
+        ) * OUTWARD
+        inside = c.g > 0
+        commanded = np.where(inside, np.where(np.isnan(commanded), np.inf, commanded), 0.0)
+        return np.where(inside, commanded * c.g * OUTWARD, 0.0), commanded
 
 
 def _coefficient(system: LawComparison, c: BoxColumns) -> tuple[Array, Array]:

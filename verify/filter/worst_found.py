@@ -58,14 +58,18 @@ class WorstFound:
     value : s
     quaternion, rate : the initial state, (4,) and (3,) rad/s
     instant : when R was least, s
-    runs : number of simulated runs
+    peak_component, peak_euclidean : largest applied torque of any of the runs, N m
+    runs, horizon : number of simulated runs, and to when each went, s
     """
 
     value: float
     quaternion: tuple[float, ...]
     rate: tuple[float, ...]
     instant: float
+    peak_component: float
+    peak_euclidean: float
     runs: int
+    horizon: float
 
 
 def find_worst(
@@ -90,14 +94,15 @@ def find_worst(
     rng = np.random.default_rng(options.seed)
     shape = _Shape(law, body, schedule, initial, max_rate)
     points = shape.draw(rng, options.samples)
-    values, times = shape.run(points, horizon)
+    values, times, peaks = shape.run(points, horizon)
     runs = options.samples
     radius = 0.3
     for _ in range(options.rounds):
         best = points[np.argsort(values)[:8]]
         centres = best[rng.integers(len(best), size=options.local)]
         fresh = shape.clip(centres + radius * rng.normal(size=centres.shape) * shape.spread(centres))
-        found, when = shape.run(fresh, horizon)
+        found, when, largest = shape.run(fresh, horizon)
+        peaks = np.maximum(peaks, largest)
         points, values = np.vstack([points, fresh]), np.append(values, found)
         times = np.append(times, when)
         runs += options.local
@@ -107,8 +112,9 @@ def find_worst(
         return None
     state = shape.states(points[worst : worst + 1])[0]
     return WorstFound(
-        float(values[worst]), tuple(state[:4].tolist()), tuple(state[4:].tolist()), float(times[worst]), runs
-    )
+        float(values[worst]), tuple(state[:4].tolist()), tuple(state[4:].tolist()), float(times[worst]),
+        float(peaks[0]), float(peaks[1]), runs, float(horizon),
+    )  # fmt: skip
 
 
 @final
@@ -177,8 +183,8 @@ class _Shape:
         kappa = float(gain(state, np.zeros(loop.time.shape[0]), loop.parameter_values(), np.ones(12)))
         return float(self.schedule.gain(0.0)) ** 2 * kappa
 
-    def run(self, points: Array, horizon: Fraction) -> tuple[Array, Array]:
-        """Least R of each point and when; inf for a point whose state is not in the set."""
+    def run(self, points: Array, horizon: Fraction) -> tuple[Array, Array, Array]:
+        """Least R of each point (inf outside the set) and when; the largest torques, component and norm."""
         states = self.states(points)
         result = simulate_ensemble(
             self.law,
@@ -192,4 +198,6 @@ class _Shape:
         assert result.metrics is not None
         values = result.metrics.filter_minimum
         bad = np.isnan(values) | ~self.inside(states)
-        return np.where(bad, np.inf, values), result.metrics.filter_minimum_time
+        torques = np.vstack([result.metrics.peak_component, result.metrics.peak_euclidean])
+        peaks = np.max(torques, axis=1, where=~bad & np.isfinite(torques).all(axis=0), initial=0.0)
+        return np.where(bad, np.inf, values), result.metrics.filter_minimum_time, peaks

@@ -46,6 +46,29 @@ def test_torque_limit_below_the_bound_is_undecided():
     assert claim.verdict is Verdict.UNDECIDED
     assert "exceeds the limit" in claim.reason
     assert "12.05 N m, exceeds it too" in claim.reason
+    bound = next(q.high for q in claim.quantities if q.name == "torque_bound_applied")
+    assert f"the bound is {bound / 12.05:.2g} times it" in claim.reason
+
+
+def test_the_largest_torque_of_the_search_stands_beside_the_bound():
+    found = answer(replace(QUESTION, torque_limit=F(5), run_peak=0.5, search=Search(samples=16, rounds=0)))
+    assert found.worst.peak_euclidean >= found.worst.peak_component > 0.5
+    assert (
+        f"of 16 runs over the set, {found.worst.peak_component:.4g} N m"
+        in by_key(found)["torque.limit"].reason
+    )
+
+
+@pytest.mark.parametrize("decay", [F(100_000), F(10) ** 12])
+def test_a_filter_that_forgets_within_a_gap_is_undecided_with_the_exponent(decay):
+    """Partner: the paper's own lambda, whose exponent is 2.5, is proved above."""
+    fast = replace(QUESTION, law=replace(PERSISTENCE, lambda_=decay), torque_limit=F(5))
+    found = answer(fast)
+    assert found.torque is None or not np.isnan(found.torque.applied)
+    for claim in found.claims:
+        assert claim.verdict is Verdict.UNDECIDED
+        assert f"R decays by exp(-{4.79 * float(decay):.3g})" in claim.reason
+        assert "lower lambda" in claim.next_step
 
 
 def test_all_four_answers_about_the_floor_are_labelled():
@@ -56,6 +79,8 @@ def test_all_four_answers_about_the_floor_are_labelled():
     }  # fmt: skip
     assert quantities["certified_floor"].high <= quantities["worst_floor_found"].low
     assert quantities["certified_floor"].high <= quantities["converged_floor"].low
+    assert "to 24 s" in quantities["worst_floor_found"].label
+    assert "to 56 s" in quantities["floor_along_run"].label
     assert [q.name for q in quantities.values() if q.rigorous] == ["certified_floor", "converged_floor"]
 
 
