@@ -50,14 +50,14 @@ def run(
     if scenario is None or output is None:
         missing = "SCENARIO.toml" if scenario is None else "--output FILE"
         raise InputError(f"certify: {missing} is missing: intermit certify SCENARIO.toml -o FILE")
-    from ..scenario import load_scenario
     from ..study.certify.run import certify
     from ..study.optimum.lower_bounds import asks_for_optimum
     from ..verify.lyapunov import certificates_of
     from .console import note, progress
+    from .opening import open_scenario
 
     began = perf_counter()
-    loaded = load_scenario(scenario)
+    loaded = open_scenario(scenario)
     with progress(loaded.name) as step:
         result = certify(loaded, step, bound=bound)
     if not result.certificates:

@@ -34,19 +34,16 @@ def run(
     Give several scenarios to see them side by side.
     """
     del debug
-    from ..scenario import load_scenario
     from ..study.check.run import run_check
     from ..study.claims.counting import exit_code
     from .check_page import print_check
     from .console import note, output, progress
+    from .opening import open_scenario
 
     began = perf_counter()
     if json is not None and len(scenarios) > 1:
         raise InputError("--json writes one record: give one scenario")
-    loaded = [load_scenario(path) for path in scenarios]
-    for scenario in loaded:
-        for warning in scenario.warnings:
-            note(f"warning: {warning}")
+    loaded = [open_scenario(path, says_clock=True) for path in scenarios]
     options = CheckOptions(simulate=simulate, margins=margins, search=search, workers=workers)
     studies = []
     for scenario in loaded:

@@ -30,6 +30,8 @@ def print_check(console: Console, studies: Sequence[CheckStudy]) -> None:
     for mark, study in zip(marks, studies, strict=True):
         console.print(f"{mark}{study.scenario.name} ({study.scenario.path.name})", style="bold")
         console.print(f"{' ' * len(mark)}{study.sentence}")
+        if clock := study.scenario.clock.words:
+            console.print(f"{' ' * len(mark)}{clock}")
     schedules = [
         Column(mark.rstrip(": ") or "verdict", study.claims)
         for mark, study in zip(marks, studies, strict=True)

@@ -20,12 +20,13 @@ def run(
 ) -> int:
     """Put every law of a scenario beside the optimum for its own settling time, with a certified bound."""
     del debug
-    from ..scenario import law_from_words, load_scenario, with_laws
+    from ..scenario import law_from_words, with_laws
     from ..study.compare.run import comparison_record, run_comparison
     from .console import progress
     from .finish import finish
+    from .opening import open_scenario
 
-    loaded = with_laws(load_scenario(scenario), *(law_from_words(words) for words in law or ()))
+    loaded = with_laws(open_scenario(scenario), *(law_from_words(words) for words in law or ()))
     with progress(loaded.name):
         record = comparison_record(run_comparison(loaded))
     return finish(record, json)

@@ -43,15 +43,13 @@ def run(
 ) -> int:
     """Find the least peak torque any controller could do with through the windows."""
     del debug
-    from ..scenario import load_scenario
     from ..study.optimum.run import run_optimum
     from .console import note, output, progress
+    from .opening import open_scenario
     from .optimum_page import print_optimum
 
     began = perf_counter()
-    loaded = load_scenario(scenario)
-    for warning in loaded.warnings:
-        note(f"warning: {warning}")
+    loaded = open_scenario(scenario, says_clock=True)
     norms = tuple(key for key in get_args(NormKey) if key in (norm or ()))
     for key in norm or ():
         if key not in norms:

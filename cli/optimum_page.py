@@ -41,6 +41,8 @@ def print_optimum(console: Console, study: OptimumStudy) -> None:
         f"{float(final_time(scenario)):g} s; "
         + ("torque up to p g(t)." if gain else "full torque inside the windows.")
     )
+    if scenario.clock.words:
+        console.print(scenario.clock.words)
     if idle := idle_words(scenario, first):
         console.print(f"Idle time left out, exactly: {idle}.")
     console.print()

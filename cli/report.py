@@ -89,16 +89,14 @@ def _study(
 ) -> tuple[int, Path]:
     from ..reports.build import exit_code, write_report
     from ..reports.folder import refuse
-    from ..scenario import load_scenario
     from ..study.check.run import CheckStudy
     from ..study.report.run import run_report
     from .check_page import print_check
-    from .console import note, output, progress
+    from .console import output, progress
+    from .opening import open_scenario
 
-    scenario = load_scenario(source)
+    scenario = open_scenario(source, says_clock=True)
     refuse(out, force=force)
-    for warning in scenario.warnings:
-        note(f"warning: {warning}")
     check = CheckOptions(margins=wanted[2], workers=WORKERS)
     options = ReportOptions(
         optimum=wanted[0], comparison=wanted[1], front=wanted[3], audit=wanted[4], check=check

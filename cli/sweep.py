@@ -21,13 +21,13 @@ def run(
 ) -> int:
     """Study schedules: peak, certified bound, floor of R and settling against duty cycle and period."""
     del debug
-    from ..scenario import load_scenario
     from ..study.pool import executor_of
     from ..study.sweep.run import run_schedule_study, schedule_record
     from .console import progress
     from .finish import finish
+    from .opening import open_scenario
 
-    loaded = load_scenario(scenario)
+    loaded = open_scenario(scenario)
     with progress(loaded.name), executor_of(workers) as executor:
         study = run_schedule_study(loaded, law=law, norm=norm_of(peak_norm), executor=executor)
     return finish(schedule_record(study), json)

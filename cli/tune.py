@@ -31,14 +31,14 @@ def run(
 ) -> int:
     """Find the parameters with the least peak torque that settle in time, under certified conditions."""
     del debug
-    from ..scenario import load_scenario
     from ..study.pool import executor_of
     from ..study.tune.run import front_record, run_front, run_tuning, tuning_record
     from .console import progress
     from .finish import finish
+    from .opening import open_scenario
 
     norm = norm_of(peak_norm)
-    loaded = load_scenario(scenario)
+    loaded = open_scenario(scenario)
     times = _times(settle)
     with progress(loaded.name):
         if front:

@@ -18,11 +18,11 @@ from typing import final
 from .errors import ScenarioError, quote
 from .exact import exact_from_text
 from .files import read_text
+from .instants import FileClock, moment
 from .units import Heading, heading
 
 _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
-_DATE = re.compile(r"\d{4}-\d{2}-\d{2}")
 _NUMBER_WORDS = frozenset({"nan", "inf", "infinity"})
 
 
@@ -35,10 +35,12 @@ class Column:
     ----------
     names : what a header may call it, lower case, words joined by "_"
     units : factor of each unit that it may state; without one its numbers are taken as they are
+    dated : whether it holds instants, which may be ISO 8601 times
     """
 
     names: tuple[str, ...]
     units: Mapping[str, Fraction]
+    dated: bool = False
 
 
 @final
@@ -54,10 +56,14 @@ class Row:
 @final
 @dataclass(frozen=True)
 class Table:
-    """Rows of a file, and which of the forms asked for its header is (0 without a header)."""
+    """Rows of a file, and which of the forms asked for its header is (0 without a header).
+
+    `unzoned`: whether it holds dates without a zone.
+    """
 
     rows: list[Row]
     form: int
+    unzoned: bool = False
 
 
 @final
@@ -67,8 +73,10 @@ class _Line:
     cells: list[str]
 
 
-def read_rows(path: Path, key: str, forms: Sequence[tuple[Column, Column]]) -> Table:
-    """Read two columns of numbers from a CSV file.
+def read_rows(
+    path: Path, key: str, forms: Sequence[tuple[Column, Column]], clock: FileClock | None = None
+) -> Table:
+    """Read two columns of numbers, or of ISO 8601 times, from a CSV file.
 
     Parameters
     ----------
@@ -80,6 +88,8 @@ def read_rows(path: Path, key: str, forms: Sequence[tuple[Column, Column]]) -> T
     forms : sequence of pairs of `Column`
         The pairs that a header may name, among other columns and in any order. A file without a header
         has two columns, those of the first form, in base units.
+    clock : FileClock, optional
+        What dates count from; without one they are refused.
 
     Raises
     ------
@@ -98,12 +108,13 @@ def read_rows(path: Path, key: str, forms: Sequence[tuple[Column, Column]]) -> T
     header = _is_header(lines[0].cells)
     width = len(lines[0].cells) if header else 2
     if header:
-        form, places, factors = _places(lines[0], forms, where)
+        form, places, factors = _places(lines[0], forms, where, below=lines[1].cells if lines[1:] else [])
         lines = lines[1:]
     if not lines:
         raise ScenarioError(where, f"has a header and no rows: expected rows '{first[0]},{first[1]}'")
-    rows = [_row(line, places, factors, width, f"{where} line {line.number}", first) for line in lines]
-    return Table(rows, form)
+    dates = _Dates(clock if clock is not None else FileClock(), forms[form], factors)
+    rows = [_row(line, places, dates, width, f"{where} line {line.number}", first) for line in lines]
+    return Table(rows, form, dates.unzoned)
 
 
 def _lines(text: str, where: str) -> list[_Line]:
@@ -177,10 +188,20 @@ def _is_number(cell: str) -> bool:
     return True
 
 
+def _is_date(cell: str) -> bool:
+    try:
+        return moment(cell) is not None
+    except ValueError:
+        return True
+
+
 def _places(
-    line: _Line, forms: Sequence[tuple[Column, Column]], where: str
+    line: _Line, forms: Sequence[tuple[Column, Column]], where: str, *, below: list[str]
 ) -> tuple[int, tuple[int, int], tuple[Fraction, Fraction]]:
-    """Return which form a header has, where its two columns stand, and their factors."""
+    """Return which form a header has, where its two columns stand, and their factors.
+
+    Dates have no unit: a column that begins with one in the row `below` needs none beside another's.
+    """
     at = f"{where} line {line.number}"
     units = frozenset(unit for form in forms for column in form for unit in column.units)
     headings = [heading(cell, units) for cell in line.cells]
@@ -200,7 +221,8 @@ def _places(
         raise ScenarioError(at, _no_columns(line, headings, forms))
     ((number, places),) = complete
     pair = forms[number]
-    if pair[0].units is pair[1].units and len({headings[i].unit is None for i in places}) > 1:
+    dated = any(_is_date(cell) for i, cell in enumerate(below) if i in places)
+    if not dated and pair[0].units is pair[1].units and len({headings[i].unit is None for i in places}) > 1:
         names = " and ".join(quote(line.cells[i]) for i in places)
         raise ScenarioError(at, f"only one of {names} states its unit: state both, or neither for seconds")
     factors = [_factor(headings[i], column, at) for i, column in zip(places, pair, strict=True)]
@@ -230,22 +252,53 @@ def _factor(found: Heading, column: Column, at: str) -> Fraction:
     return column.units[found.unit]
 
 
+@final
+@dataclass
+class _Dates:
+    """How cells become seconds, and what was seen of dates so far."""
+
+    clock: FileClock
+    columns: tuple[Column, Column]
+    factors: tuple[Fraction, Fraction]
+    known: list[bool] | None = None
+    unzoned: bool = False
+
+    def numbers(self, cells: tuple[str, str]) -> tuple[Fraction, Fraction]:
+        """Seconds, or numbers, of two cells.
+
+        Raises
+        ------
+        ValueError
+            For what is neither a number nor a date, a date where none belongs, and mixed columns.
+        """
+        found = [moment(cell) for cell in cells]
+        known = [at is not None for at in found]
+        for at, column, factor in zip(found, self.columns, self.factors, strict=True):
+            if at is not None and not column.dated:
+                raise ValueError(f"expected a number under {quote(column.names[0])}, received {at}")
+            if at is not None and factor != 1:
+                raise ValueError(f"{at} is a date, and the header gives its column a unit: remove the unit")
+        both = all(column.dated for column in self.columns)
+        if (both and known[0] != known[1]) or known != (self.known or known):
+            raise ValueError("mixes dates and seconds: write all instants as dates, or all in seconds")
+        self.known = known
+        self.unzoned |= any(at is not None and not at.zoned for at in found)
+        one, other = (
+            exact_from_text(cell) * factor if at is None else self.clock.seconds(at)
+            for cell, at, factor in zip(cells, found, self.factors, strict=True)
+        )
+        return one, other
+
+
 def _row(
-    line: _Line,
-    places: tuple[int, int],
-    factors: tuple[Fraction, Fraction],
-    width: int,
-    at: str,
-    names: tuple[str, str],
+    line: _Line, places: tuple[int, int], dates: _Dates, width: int, at: str, names: tuple[str, str]
 ) -> Row:
     if not max(places) < len(line.cells) <= width:  # more cells than the header has: a decimal comma, say
         raise ScenarioError(
             at, f"expected two numbers, '{names[0]},{names[1]}', received {quote(','.join(line.cells))}"
         )
     try:
-        numbers = [exact_from_text(line.cells[i]) * factor for i, factor in zip(places, factors, strict=True)]
+        numbers = dates.numbers((line.cells[places[0]], line.cells[places[1]]))
     except ValueError as error:
-        date = any(_DATE.match(line.cells[i]) for i in places)
-        remedy = ": give times in seconds from the start of the run" if date else ""
-        raise ScenarioError(at, f"{error}{remedy}") from None
-    return Row(line.number, numbers[0], numbers[1])
+        raise ScenarioError(at, str(error)) from None
+    return Row(line.number, *numbers)

@@ -84,21 +84,30 @@ def build(
         state lies outside the set.
     """
     target = attitude(file.target, document, "target")
-    if file.initial is None and file.initial_set is None:
+    given = _given(file)
+    if given is None and file.initial_set is None:
         raise ScenarioError(document.where("initial"), "required (or [initial_set]), but missing")
-    if file.initial is not None:
-        state = _state(file.initial, target, document)
+    if given is not None:
+        state = _state(given, target, document)
     else:
         assert file.initial_set is not None
         state = _representative(file.initial_set)
     if file.initial_set is not None:
         table = file.initial_set
         bounds = InitialSet(table.max_angle_deg, table.max_rate, table.max_weighted_rate)
-        if file.initial is not None:
+        if given is not None:
             _check_inside(state, bounds, document, body, starts_in_window=starts_in_window)
     else:
         bounds = _around(state)
     return state, bounds
+
+
+def _given(file: ScenarioFile) -> InitialTable | None:
+    """Return the table of the state; None where it says no more than when the run starts, beside a set."""
+    table = file.initial
+    if table is not None and file.initial_set is not None and table.model_fields_set <= {"time"}:
+        return None
+    return table
 
 
 def attitude(table: AttitudeTable, document: Document, key: str) -> tuple[float, ...]:

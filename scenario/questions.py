@@ -55,7 +55,7 @@ class OptimumTable(Table):
     `torque_limit`, N m: for minimum impulse and time, and for explaining why a problem is hopeless.
     """
 
-    final_time: Positive | None = None
+    final_time: Exact | None = None
     norm: Norm = "component"
     profile: Profile = "window"
     attitude_tolerance: Sine = Fraction(0)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
-from typing import final
+from typing import Any, final
 
 from ..models.linear import LinearPlant
 from ..models.rigid_body import ExactMatrix, RigidBody
@@ -16,6 +16,7 @@ from .document import Document, read_document
 from .errors import ScenarioError, quote
 from .fingerprint import fingerprint
 from .initial import InitialSet, InitialState
+from .instants import FileClock, number_text, read_clock
 from .laws import LawChoice
 from .questions import CheckTable, CompareTable, OptimumTable, ReportTable, StudyTable, TuneTable
 from .schedules import ScheduleChoice
@@ -48,6 +49,7 @@ class Scenario:
     tolerance, simulation, limits, check, optimum, compare, tune, study, report : the tables of those names
     warnings : one line each; nothing in them stops a run
     sha256 : hash of what the scenario says, files it names included
+    clock : what the file's own times count from; all times here count from the start of the run
     """
 
     path: Path
@@ -72,6 +74,7 @@ class Scenario:
     report: ReportTable
     warnings: tuple[str, ...]
     sha256: str
+    clock: FileClock
 
     @property
     def schedule(self) -> Schedule:
@@ -113,20 +116,24 @@ def load_scenario(path: str | Path) -> Scenario:
     ScenarioError
         One line that names the file and the key or CSV line, for anything wrong with the input.
     """
-    document = read_document(Path(path))
-    return build_scenario(validate(document), document)
+    document, clock, warnings = read_clock(read_document(Path(path)))
+    return build_scenario(validate(document), document, clock, warnings)
 
 
-def build_scenario(file: ScenarioFile, document: Document) -> Scenario:
-    """Build a scenario from its typed file."""
+def build_scenario(
+    file: ScenarioFile, document: Document, clock: FileClock | None = None, told: tuple[str, ...] = ()
+) -> Scenario:
+    """Build a scenario from its typed file and its clock; by default it runs from 0 s on."""
+    said, clock = file, clock if clock is not None else FileClock()
+    file = _from_start(file, document, clock)
     body, tolerance, warnings = spacecraft.build(file.spacecraft, document)
-    schedule_choice = schedules.build(file.schedule, document)
+    schedule_choice = schedules.build(file.schedule, document, clock)
     _require_reach(file, schedule_choice.schedule, document)
     at_once = schedule_choice.schedule.profile.shapes[0]
     starts_in_window = bool(at_once and at_once[0])
     state, bounds = initial.build(file, document, body, starts_in_window=starts_in_window)
     choices = laws.build(file, document)
-    warnings += schedule_choice.warnings
+    warnings += told + schedule_choice.warnings
     if bounds.max_angle_deg > 180 + initial.ANGLE_ALLOWANCE:
         warnings += (
             f"{document.where('initial' if bounds.from_state else 'initial_set')}: error angle up to "
@@ -155,10 +162,38 @@ def build_scenario(file: ScenarioFile, document: Document) -> Scenario:
         study=file.study,
         report=_report(file.report, document, choices),
         warnings=warnings,
-        sha256=fingerprint(file, _attachments(file, document, choices)),
+        sha256=fingerprint(said, _attachments(file, document, choices)),
+        clock=clock,
     )
     _require_turns(scenario, document)
     return scenario
+
+
+def _from_start(file: ScenarioFile, document: Document, clock: FileClock) -> ScenarioFile:
+    """Return the file with the ends of its run and of its transfer counted from the start of the run.
+
+    Raises
+    ------
+    ScenarioError
+        Naming an end that does not come after the start.
+    """
+
+    def counted(key: str, end: Fraction | None) -> Fraction | None:
+        if end is not None and end <= clock.start:
+            late = "0"
+            if clock.start_is_given:
+                late = f"{number_text(clock.start)} s, when the run starts (initial.time)"
+            raise ScenarioError(document.where(key), f"must be > {late}, received {number_text(end)}")
+        return None if end is None else end - clock.start
+
+    horizon = counted("simulation.horizon", file.simulation.horizon)
+    final = counted("optimum.final_time", file.optimum.final_time)
+    changes: dict[str, Any] = {}
+    if horizon is not None:
+        changes["simulation"] = file.simulation.model_copy(update={"horizon": horizon})
+    if final is not None:
+        changes["optimum"] = file.optimum.model_copy(update={"final_time": final})
+    return file.model_copy(update=changes)
 
 
 MAX_IDLE = Fraction(10**8)

@@ -7,19 +7,24 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
 
-from ..models.schedule import Hermite, Ramps, Schedule, Shape, Window, build_schedule
+from ..models.schedule import Hermite, Ramps, Schedule, Shape, Window, build_schedule, starting_at
 from . import thrust
 from .csv_tables import Column, read_rows
 from .document import Document
 from .errors import ScenarioError
+from .instants import READ_AS_UTC, FileClock, number_text
 from .schema import ScheduleTable
 from .units import TIME
 
 MAX_COUNT = 200_000
 """Windows that `count` may ask for."""
-_OPENS = Column(("on", "start", "begin", "open", "opens", "t_on", "start_time", "window_start"), TIME)
+_OPENS = Column(
+    ("on", "start", "begin", "open", "opens", "t_on", "start_time", "window_start"), TIME, dated=True
+)
 _CLOSES = Column(
-    ("off", "stop", "end", "close", "closes", "t_off", "stop_time", "end_time", "window_end"), TIME
+    ("off", "stop", "end", "close", "closes", "t_off", "stop_time", "end_time", "window_end"),
+    TIME,
+    dated=True,
 )
 _LASTS = Column(("duration", "length", "width"), TIME)
 WINDOW_COLUMNS = ((_OPENS, _CLOSES), (_OPENS, _LASTS))
@@ -54,8 +59,8 @@ class ScheduleChoice:
         return self.shape == "hermite-as-printed"
 
 
-def build(table: ScheduleTable, document: Document) -> ScheduleChoice:
-    """Build the schedule of a scenario.
+def build(table: ScheduleTable, document: Document, clock: FileClock) -> ScheduleChoice:
+    """Build the schedule of a scenario, in time counted from the start of the run.
 
     Raises
     ------
@@ -77,16 +82,19 @@ def build(table: ScheduleTable, document: Document) -> ScheduleChoice:
         )
     _refuse_stray_keys(table, given[0], document)
     if table.thrust is not None:
-        schedule = thrust.build(table, table.thrust, document)
-        return ScheduleChoice(schedule, "measured", thrust.described(table.thrust))
-    windows, locate, source = _windows(table, document)
+        schedule, first, warnings = thrust.build(table, table.thrust, document, clock)
+        source = thrust.described(table.thrust)
+        schedule, left_out = _from_start(schedule, first, document, clock)
+        return ScheduleChoice(schedule, "measured", source, (*warnings, *left_out))
+    windows, locate, source, warnings = _windows(table, document, clock)
     period = table.period if table.count is None else None
-    windows, warnings = _without_noise(windows, locate)
-    _check_order(windows, period, locate)
+    windows, mended = _without_noise(windows, locate)
+    _check_order(windows, period, locate, clock)
     name = table.shape or "hermite"
+    first = min(windows[0].on, clock.start) if clock.start_is_given else clock.start
     try:
         schedule = build_schedule(
-            windows,
+            [Window(w.on - first, w.off - first) for w in windows],
             _shape(name, table, document),
             period=period,
             thruster_rise=table.thruster_rise,
@@ -96,7 +104,39 @@ def build(table: ScheduleTable, document: Document) -> ScheduleChoice:
         raise
     except ValueError as error:
         raise ScenarioError(document.where("schedule"), str(error)) from None
-    return ScheduleChoice(schedule, name, source, warnings)
+    schedule, left_out = _from_start(schedule, first, document, clock)
+    return ScheduleChoice(schedule, name, source, (*warnings, *mended, *left_out))
+
+
+def _from_start(
+    schedule: Schedule, first: Fraction, document: Document, clock: FileClock
+) -> tuple[Schedule, tuple[str, ...]]:
+    """Count the time of a schedule that counts from `first`, s on the file's clock, from the run's start."""
+    where = document.where("initial.time")
+    if clock.start > first:
+        try:
+            later = starting_at(schedule, clock.start - first)
+        except ValueError:
+            at = number_text(clock.start)
+            inside = schedule.period is not None or clock.start - first < schedule.end
+            why = "a window is open (or g acts) then" if inside else "every window has closed by then"
+            raise ScenarioError(
+                where, f"the run cannot start at {at} s: {why}; give a start between two windows"
+            ) from None
+        gone = len(schedule.windows) - len(later.windows)
+        words = (
+            (f"{where}: {gone} window{'s' if gone > 1 else ''} before the start left out",) if gone else ()
+        )
+        return later, words
+    lead, span = schedule.windows[0].on, schedule.windows[-1].off - schedule.windows[0].on
+    if schedule.period is None and lead > span:
+        opens = number_text(clock.start + lead)
+        return schedule, (
+            f"{where}: the first window opens {float(lead):.6g} s after the run starts "
+            f"({number_text(clock.start)} s), longer than all windows take ({float(span):.6g} s): "
+            f"give initial.time = {opens} to start with it",
+        )
+    return schedule, ()
 
 
 def _refuse_stray_keys(table: ScheduleTable, form: str, document: Document) -> None:
@@ -114,21 +154,26 @@ def _refuse_stray_keys(table: ScheduleTable, form: str, document: Document) -> N
             raise ScenarioError(document.where(f"schedule.{key}"), f"{reason}: remove it")
 
 
-def _windows(table: ScheduleTable, document: Document) -> tuple[list[Window], Locate, str]:
+def _windows(
+    table: ScheduleTable, document: Document, clock: FileClock
+) -> tuple[list[Window], Locate, str, tuple[str, ...]]:
+    """Windows on the file's clock, how messages name each, the source in words, and warnings."""
     if table.windows is not None:
         key = document.where("schedule.windows")
         if not table.windows:
             raise ScenarioError(key, "is empty: give at least one [on, off] pair")
         windows = [Window(on, off) for on, off in table.windows]
-        return windows, lambda i: f"{key}[{i + 1}]", f"table of {len(windows)} windows"
+        return windows, lambda i: f"{key}[{i + 1}]", f"table of {len(windows)} windows", ()
     if table.csv is not None:
         key = document.where("schedule.csv")
         path = document.origin("schedule").parent / table.csv
-        table_read = read_rows(path, key, WINDOW_COLUMNS)
+        table_read = read_rows(path, key, WINDOW_COLUMNS, clock)
         rows, by_length = table_read.rows, table_read.form == 1
         lines = [row.line for row in rows]
         windows = [Window(row.first, row.second + (row.first if by_length else 0)) for row in rows]
-        return windows, lambda i: f"{key}: {path.name} line {lines[i]}", f"{path.name}, {len(rows)} windows"
+        unzoned = (f"{key}: {path.name}: {READ_AS_UTC}",) if table_read.unzoned else ()
+        source = f"{path.name}, {len(rows)} windows"
+        return windows, lambda i: f"{key}: {path.name} line {lines[i]}", source, unzoned
     key = document.where("schedule.on_time")
     if table.period is None:
         raise ScenarioError(document.where("schedule.period"), "required with on_time, but missing")
@@ -138,13 +183,12 @@ def _windows(table: ScheduleTable, document: Document) -> tuple[list[Window], Lo
         raise ScenarioError(
             document.where("schedule.count"), f"must be at most {MAX_COUNT}, received {count}"
         )
-    if on + on_time > period:
-        raise ScenarioError(
-            key, f"on + on_time = {float(on + on_time):g} s goes beyond the period of {float(period):g} s"
-        )
+    if (on if on < period and not clock.start_is_given else 0) + on_time > period:
+        both = f"on + on_time = {float(on + on_time):g} s" if on else f"on_time = {float(on_time):g} s"
+        raise ScenarioError(key, f"{both} goes beyond the period of {float(period):g} s")
     windows = [Window(k * period + on, k * period + on + on_time) for k in range(count)]
     many = "endless" if table.count is None else f"{count} windows"
-    return windows, lambda _: key, f"period {float(period):g} s, on {float(on_time):g} s, {many}"
+    return windows, lambda _: key, f"period {float(period):g} s, on {float(on_time):g} s, {many}", ()
 
 
 NOISE = Fraction(1, 10**9)
@@ -173,24 +217,35 @@ def _without_noise(windows: list[Window], locate: Locate) -> tuple[list[Window],
     )
 
 
-def _check_order(windows: Sequence[Window], period: Fraction | None, locate: Locate) -> None:
+def _check_order(
+    windows: Sequence[Window], period: Fraction | None, locate: Locate, clock: FileClock
+) -> None:
     """Refuse windows that are empty, disordered or overlapping, naming key or CSV line."""
     for i, window in enumerate(windows):
-        if window.on < 0:
-            raise ScenarioError(locate(i), f"opens at {float(window.on):g} s: times start at 0 s")
+        if window.on < clock.start and not clock.start_is_given:
+            raise ScenarioError(
+                locate(i),
+                f"opens at {float(window.on):g} s: times start at 0 s (or at initial.time, if it is given)",
+            )
         if window.off <= window.on:
             raise ScenarioError(
-                locate(i), f"closes ({float(window.off):g} s) before it opens ({float(window.on):g} s)"
+                locate(i),
+                f"closes ({number_text(window.off)} s) before it opens ({number_text(window.on)} s)",
             )
         if i and window.on < windows[i - 1].off:
             raise ScenarioError(
                 locate(i),
-                f"opens ({float(window.on):g} s) before the window above it closes "
-                f"({float(windows[i - 1].off):g} s): windows must be in order and not overlap",
+                f"opens ({number_text(window.on)} s) before the window above it closes "
+                f"({number_text(windows[i - 1].off)} s): windows must be in order and not overlap",
             )
-        if period is not None and window.off > period:
+        begins = min(clock.start, windows[0].on)
+        if period is not None and window.off > begins + period:
+            late = window.on >= begins + period
+            first = ": the first period begins with the run (give initial.time)" if late else ""
             raise ScenarioError(
-                locate(i), f"closes ({float(window.off):g} s) after the period ends ({float(period):g} s)"
+                locate(i),
+                f"closes ({number_text(window.off)} s) after the period ends "
+                f"({number_text(begins + period)} s){first}",
             )
 
 

@@ -46,13 +46,16 @@ class ThrustTable(Table):
 class ScheduleTable(Table):
     """[schedule]: exactly one of `windows`, `csv`, `on` with `on_time`, `thrust`; times in s.
 
+    `epoch` is the date that counts as 0 s where times are ISO 8601 dates.
+
     `period` repeats the table for ever; without it a table or CSV is finite. `on`, `on_time` and
     `period` describe one window a period, endless unless `count` ends it.
     """
 
+    epoch: Text | None = None
     windows: tuple[tuple[Exact, Exact], ...] | None = None
     csv: Text | None = None
-    on: NotNegative | None = None
+    on: Exact | None = None
     on_time: Positive | None = None
     count: Count | None = None
     thrust: ThrustTable | None = None
@@ -73,8 +76,9 @@ class AttitudeTable(Table):
 
 
 class InitialTable(AttitudeTable):
-    """[initial]: an attitude and the body rate, rad/s, body frame."""
+    """[initial]: when the run starts, s; an attitude and the body rate then, rad/s, body frame."""
 
+    time: Exact | None = None
     rate: Vector = (Fraction(0), Fraction(0), Fraction(0))
 
 
@@ -141,7 +145,7 @@ class ToleranceTable(Table):
 class SimulationTable(Table):
     """[simulation]: `horizon` and `output_step` of the histories, s; `saturate` at the torque limit."""
 
-    horizon: Positive | None = None
+    horizon: Exact | None = None
     output_step: Positive = Fraction(1, 100)
     saturate: StrictBool = False
 

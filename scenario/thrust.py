@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path
 
@@ -10,17 +11,23 @@ from ..models.schedule.measured import measured_schedule, normalised
 from .csv_tables import Column, read_rows
 from .document import Document
 from .errors import ScenarioError
+from .instants import READ_AS_UTC, FileClock, number_text
 from .schema import ScheduleTable, ThrustTable
 from .units import THRUST, TIME
 
 SAMPLE_COLUMNS = (
-    (Column(("time", "t", "timestamp"), TIME), Column(("thrust", "force", "f", "torque", "value"), THRUST)),
+    (
+        Column(("time", "t", "timestamp"), TIME, dated=True),
+        Column(("thrust", "force", "f", "torque", "value"), THRUST),
+    ),
 )
 """What a CSV of measured thrust holds."""
 
 
-def build(table: ScheduleTable, thrust: ThrustTable, document: Document) -> Schedule:
-    """Build the schedule of measured thrust.
+def build(
+    table: ScheduleTable, thrust: ThrustTable, document: Document, clock: FileClock
+) -> tuple[Schedule, Fraction, tuple[str, ...]]:
+    """Build the schedule of measured thrust; the instant from which its time counts, s; and warnings.
 
     Raises
     ------
@@ -29,30 +36,35 @@ def build(table: ScheduleTable, thrust: ThrustTable, document: Document) -> Sche
     """
     key = document.where("schedule.thrust.csv")
     path = document.origin("schedule").parent / thrust.csv
-    rows = read_rows(path, key, SAMPLE_COLUMNS).rows
-    if rows[0].first < 0:
+    table_read = read_rows(path, key, SAMPLE_COLUMNS, clock)
+    rows = table_read.rows
+    begins = min(rows[0].first, clock.start) if clock.start_is_given else clock.start
+    if rows[0].first < begins:
         at = f"{key}: {path.name} line {rows[0].line}"
-        raise ScenarioError(at, f"time {float(rows[0].first):g} s: times start at 0 s")
+        raise ScenarioError(
+            at, f"time {float(rows[0].first):g} s: times start at 0 s (or at initial.time, if it is given)"
+        )
     for before, row in pairwise(rows):
         if row.first <= before.first:
             raise ScenarioError(
                 f"{key}: {path.name} line {row.line}",
-                f"time {float(row.first):g} s does not come after {float(before.first):g} s "
+                f"time {number_text(row.first)} s does not come after {number_text(before.first)} s "
                 "in the row above it",
             )
-    if table.period is not None and rows[-1].first > table.period:
+    if table.period is not None and rows[-1].first > begins + table.period:
         raise ScenarioError(
             f"{key}: {path.name} line {rows[-1].line}",
-            f"time {float(rows[-1].first):g} s comes after the period ends ({float(table.period):g} s)",
+            f"time {number_text(rows[-1].first)} s comes after the period ends "
+            f"({number_text(begins + table.period)} s)",
         )
     try:
         samples = normalised(
-            [row.first for row in rows],
+            [row.first - begins for row in rows],
             [row.second for row in rows],
             zero_below=thrust.zero_below,
             full_thrust=thrust.full_thrust,
         )
-        return measured_schedule(
+        schedule = measured_schedule(
             samples,
             period=table.period,
             thruster_rise=table.thruster_rise,
@@ -62,6 +74,7 @@ def build(table: ScheduleTable, thrust: ThrustTable, document: Document) -> Sche
         raise
     except ValueError as error:
         raise ScenarioError(f"{key}: {path.name}", str(error)) from None
+    return schedule, begins, (f"{key}: {path.name}: {READ_AS_UTC}",) if table_read.unzoned else ()
 
 
 def described(thrust: ThrustTable) -> str:

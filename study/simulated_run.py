@@ -11,7 +11,7 @@ import numpy as np
 
 from ..models.closed_loop import Saturation
 from ..models.laws import Law
-from ..models.schedule.variants import since
+from ..models.schedule.variants import starting_at
 from ..models.simulation import (
     Figures,
     Invariants,
@@ -101,7 +101,7 @@ def run_law(scenario: Scenario, law: Law) -> Run:
         trajectory = simulate(
             law,
             scenario.body,
-            since(scenario.schedule, lead) if lead else scenario.schedule,
+            starting_at(scenario.schedule, lead) if lead else scenario.schedule,
             quaternion=scenario.initial.quaternion,
             rate=scenario.initial.rate,
             horizon=scenario.horizon - lead,

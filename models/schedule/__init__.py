@@ -5,7 +5,14 @@ from .measured import ThrustSample, measured_schedule
 from .piecewise import Piece, PiecewisePolynomial
 from .profiles import Hermite, Ramps, Shape, build_schedule
 from .schedule import Schedule, Window
-from .variants import longer_gap, missing_in_a_row, shifted_edges, unrolled, without_windows
+from .variants import (
+    longer_gap,
+    missing_in_a_row,
+    shifted_edges,
+    starting_at,
+    unrolled,
+    without_windows,
+)
 
 __all__ = [
     "Clock",
@@ -22,6 +29,7 @@ __all__ = [
     "measured_schedule",
     "missing_in_a_row",
     "shifted_edges",
+    "starting_at",
     "unrolled",
     "without_windows",
 ]

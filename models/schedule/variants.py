@@ -35,27 +35,44 @@ def unrolled(schedule: Schedule, cycles: int) -> Schedule:
     )
 
 
-def since(schedule: Schedule, instant: Fraction) -> Schedule:
-    """Return a finite table with its time counted from an instant before which nothing acts.
+def starting_at(schedule: Schedule, instant: Fraction) -> Schedule:
+    """Return the schedule with its time counted from an instant at which g is zero; what was before is gone.
+
+    A periodic schedule is turned: its windows are those that open from the instant on, within one period.
 
     Raises
     ------
     ValueError
-        If the schedule is periodic, or something happens before the instant.
+        If the instant is negative or g acts there, or nothing is left.
     """
-    pieces = list(
-        zip(schedule.profile.shapes, schedule.profile.knots, schedule.profile.knots[1:], strict=False)
-    )
-    quiet = all(not any(shape) for shape, start, _ in pieces if start < instant)
-    if schedule.period is not None or not quiet or schedule.windows[0].on < instant:
-        raise ValueError(f"time cannot be counted from {float(instant):g} s: the schedule acts before it")
-    later = [(shape, max(start, instant), end) for shape, start, end in pieces if end > instant]
-    knots = (Fraction(0), *(end - instant for _, _, end in later))
-    return replace(
-        schedule,
-        windows=tuple(Window(w.on - instant, w.off - instant) for w in schedule.windows),
-        profile=PiecewisePolynomial(knots, tuple(shape for shape, _, _ in later)),
-    )
+    if instant < 0:
+        raise ValueError(f"a schedule starts at 0 s or later, received {float(instant):g} s")
+    end, knots, shapes = schedule.end, schedule.profile.knots, schedule.profile.shapes
+    place = instant if schedule.period is None else instant % end
+    index = bisect_right(knots, place) - 1
+    if place < end and place != knots[index] and shapes[index]:
+        raise ValueError(f"g acts at {float(instant):g} s: a run cannot start there")
+    for window in schedule.windows:
+        if window.on < place < window.off:
+            raise ValueError(f"the window [{float(window.on):g}, {float(window.off):g}] s is open there")
+    windows = [Window(w.on - place, w.off - place) for w in schedule.windows if w.on >= place]
+    later = [
+        Piece(max(p.start, place) - place, p.end - place, p.shape)
+        for p in schedule.profile.pieces
+        if p.end > place
+    ]
+    if schedule.period is not None:
+        turn = end - place
+        later = [p for p in later if p.shape]
+        later += [
+            Piece(p.start + turn, p.end + turn, p.shape)
+            for p in schedule.profile.pieces
+            if p.shape and p.start < place
+        ]
+        windows += [Window(w.on + turn, w.off + turn) for w in schedule.windows if w.on < place]
+    if not windows:
+        raise ValueError(f"every window has closed before {float(instant):g} s")
+    return replace(schedule, windows=tuple(windows), profile=contiguous(later, schedule.period))
 
 
 def without_windows(schedule: Schedule, missed: Collection[int]) -> Schedule:

@@ -111,6 +111,8 @@ def scenario_entry(scenario: Scenario) -> dict[str, Any]:
         facts.append(_fact("largest sqrt(Omega' J Omega) of the set", quantity))
     settled = f"|bv| <= {float(tolerance.attitude):g} and |w| <= {float(tolerance.rate):g} rad/s, for good"
     facts.append(_fact("settled means", text=settled))
+    if scenario.clock.words:
+        facts.append(_fact("clock", text=scenario.clock.words))
     facts.append(_fact("runs end at", _exact("horizon", scenario.horizon, "s")))
     if scenario.limits is not None:
         quantity = _exact("torque_limit", scenario.limits.torque, "N m")

@@ -24,7 +24,8 @@ BAD_TABLES = {
     ),
     "negative time": (
         {"schedule": "windows = [[-0.01, 3.21]]"},
-        "scenario.toml: schedule.windows[1]: opens at -0.01 s: times start at 0 s",
+        "scenario.toml: schedule.windows[1]: opens at -0.01 s: times start at 0 s "
+        "(or at initial.time, if it is given)",
     ),
     "window after the period": (
         {"schedule": "windows = [[0.01, 3.21], [8.01, 11.21]]\nperiod = 11"},
@@ -293,7 +294,11 @@ BAD_THRUST = {
         "",
         ": t.csv line 3: time 1 s does not come after 1 s in the row above it",
     ),
-    "negative time": ("-1,0\n1,1\n2,0\n", "", ": t.csv line 1: time -1 s: times start at 0 s"),
+    "negative time": (
+        "-1,0\n1,1\n2,0\n",
+        "",
+        ": t.csv line 1: time -1 s: times start at 0 s (or at initial.time, if it is given)",
+    ),
     "beyond the period": (
         "0,0\n1,1\n9,0\n",
         "period = 8\n",

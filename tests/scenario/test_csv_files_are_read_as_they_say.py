@@ -68,7 +68,7 @@ def test_what_spreadsheets_write_is_read_exactly(read, text):
         ("# on_ms,off_ms\n10,3210\n", "a comment speaks of 'ms'"),
         ("# times in ms\non,off\n10,3210\n", "a comment speaks of 'ms'"),
         ("on;off\n1,000;2,000\n", "decimal or thousands"),
-        ("on,off\n2020-03-30T21:59:34,2020-03-30T22:06:16\n", "in seconds from the start of the run"),
+        ("on,off\n2020-03-30T21:59:34,2020-03-30T22:06:16\n", "give schedule.epoch"),
         ("on,off\n1,5,2,5\n", "expected two numbers"),
         ('on,off\n"0.01,3.21\n', "cannot be split into cells"),
         ("0.01;3.21;4\n", "expected two numbers"),

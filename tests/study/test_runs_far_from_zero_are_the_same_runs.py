@@ -4,7 +4,7 @@ from fractions import Fraction as F
 
 import numpy as np
 import pytest
-from intermit.models.schedule.variants import since
+from intermit.models.schedule.variants import starting_at
 from intermit.scenario import load_scenario
 from intermit.study.simulated_run import metrics, run_law
 
@@ -67,9 +67,9 @@ def test_time_counted_from_an_instant_is_the_same_schedule(tmp_path):
     windows = random_firings(7)
     scenario, _ = run(tmp_path, windows, 10**6)
     plain, _ = run(tmp_path, [(a - 1, b - 1) for a, b in windows], 0)
-    assert since(scenario.schedule, F(10**6 + 1)) == plain.schedule
-    with pytest.raises(ValueError, match="acts before it"):
-        since(scenario.schedule, F(10**6 + 2))
+    assert starting_at(scenario.schedule, F(10**6 + 1)) == plain.schedule
+    with pytest.raises(ValueError, match="g acts"):
+        starting_at(scenario.schedule, scenario.schedule.windows[0].on + F(1, 1000))
 
 
 def test_a_tumbling_start_leaves_nothing_out(tmp_path):
