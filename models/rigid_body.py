@@ -52,17 +52,15 @@ class RigidBody:
         return np.array([[float(x) for x in row] for row in self.exact_inertia])
 
     @cached_property
+    def exact_inverse(self) -> ExactMatrix:
+        """J^-1, exact, (3, 3), 1/(kg m^2)."""
+        adjugate, det = _adjugate(self.exact_inertia), leading_minors(self.exact_inertia)[2]
+        return tuple((row[0] / det, row[1] / det, row[2] / det) for row in adjugate)
+
+    @cached_property
     def inverse_inertia(self) -> Array:
         """J^-1 as floats, (3, 3), 1/(kg m^2), rounded from the exact inverse."""
-        J = self.exact_inertia
-        det = leading_minors(J)[2]
-        inverse = np.empty((3, 3))
-        for i in range(3):
-            for j in range(3):
-                a, b = (j + 1) % 3, (j + 2) % 3
-                c, d = (i + 1) % 3, (i + 2) % 3
-                inverse[i, j] = float((J[a][c] * J[b][d] - J[a][d] * J[b][c]) / det)
-        return inverse
+        return np.array([[float(x) for x in row] for row in self.exact_inverse])
 
     @cached_property
     def principal_inertias(self) -> Array:
@@ -74,25 +72,27 @@ class RigidBody:
         """Whether each principal inertia is at most the sum of the other two (exact: tr(J)/2 I - J >= 0)."""
         J = self.exact_inertia
         half = (J[0][0] + J[1][1] + J[2][2]) / 2
-        M = tuple(tuple((half if i == j else Fraction(0)) - J[i][j] for j in range(3)) for i in range(3))
-        pairs = ((0, 1), (0, 2), (1, 2))
-        first = all(M[i][i] >= 0 for i in range(3))
-        second = all(M[i][i] * M[j][j] - M[i][j] ** 2 >= 0 for i, j in pairs)
-        return first and second and _determinant(M) >= 0
+        M = [[(half if i == j else Fraction(0)) - J[i][j] for j in range(3)] for i in range(3)]
+        adjugate = _adjugate(M)
+        minors = (*(M[i][i] for i in range(3)), *(adjugate[i][i] for i in range(3)), leading_minors(M)[2])
+        return all(minor >= 0 for minor in minors)
 
 
 def leading_minors(matrix: Sequence[Sequence[Fraction]]) -> tuple[Fraction, Fraction, Fraction]:
     """Leading principal minors of a 3 by 3 matrix; all positive iff a symmetric one is positive definite."""
-    m = matrix
-    return m[0][0], m[0][0] * m[1][1] - m[0][1] * m[1][0], _determinant(m)
+    adjugate = _adjugate(matrix)
+    det = sum((matrix[0][j] * adjugate[j][0] for j in range(3)), Fraction(0))
+    return matrix[0][0], adjugate[2][2], det
 
 
-def _determinant(m: Sequence[Sequence[Fraction]]) -> Fraction:
-    return (
-        m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1])
-        - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
-        + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0])
-    )
+def _adjugate(m: Sequence[Sequence[Fraction]]) -> list[list[Fraction]]:
+    """Cofactors, transposed, of a 3 by 3 matrix (models go without the proof library)."""
+
+    def cofactor(i: int, j: int) -> Fraction:
+        a, b, c, d = (i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3
+        return m[a][c] * m[b][d] - m[a][d] * m[b][c]
+
+    return [[cofactor(j, i) for j in range(3)] for i in range(3)]
 
 
 def attitude_rate(b0: Any, bv: Any, w: Any) -> tuple[Any, Any]:

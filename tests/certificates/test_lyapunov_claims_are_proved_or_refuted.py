@@ -12,6 +12,8 @@ from intermit.models.closed_loop import close_loop
 from intermit.models.laws import AdaptiveScalingAsPrinted, PersistenceFilterAsPrinted, QuaternionPD
 from intermit.verify import checker
 from intermit.verify.certificates import certificate_text
+from intermit.verify.exact.direction import rational_direction, rational_quaternion
+from intermit.verify.exact.matrix import quadratic_form
 from intermit.verify.lyapunov import (
     ExactDerivative,
     NoCertificateError,
@@ -24,8 +26,7 @@ from intermit.verify.lyapunov import (
     paper_condition,
     sharp_threshold,
 )
-from intermit.verify.lyapunov.definiteness import negative_direction, quadratic
-from intermit.verify.lyapunov.exact_states import rational_direction, rational_quaternion
+from intermit.verify.lyapunov.definiteness import negative_direction
 from intermit.verify.lyapunov.identity import random_state
 from intermit.verify.verdict import Verdict
 from problems import paper_schedule
@@ -199,14 +200,14 @@ def test_derivative_as_the_checker_derives_it_equals_the_models():
 def test_negative_directions_are_exact():
     A = [[F(1), F(2), F(0)], [F(2), F(1), F(0)], [F(0), F(0), F(1)]]
     x = negative_direction(A, strict=False)
-    assert quadratic(A, x) < 0
+    assert quadratic_form(A, x) < 0
     A = [[F(0), F(1), F(0)], [F(1), F(5), F(0)], [F(0), F(0), F(1)]]
     x = negative_direction(A, strict=False)
-    assert quadratic(A, x) < 0
+    assert quadratic_form(A, x) < 0
     semidefinite = [[F(1), F(1), F(0)], [F(1), F(1), F(0)], [F(0), F(0), F(1)]]
     assert negative_direction(semidefinite, strict=False) is None
     x = negative_direction(semidefinite, strict=True)
-    assert quadratic(semidefinite, x) == 0
+    assert quadratic_form(semidefinite, x) == 0
     assert any(x)
 
 

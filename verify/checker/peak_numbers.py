@@ -40,6 +40,11 @@ Cubic = dict[tuple[int, int, int], Fraction]
 Local = tuple[list[int], int]
 """Of a polynomial: constant, slopes 1 to 3, squares 1 to 3, products 23, 13, 12; and a bound of the rest."""
 Number = TypeVar("Number", int, Fraction)
+PI = (
+    Fraction(31415926535897932384626433832795028841, 10**37),
+    Fraction(31415926535897932384626433832795028842, 10**37),
+)
+"""Below and above."""
 Six = list[float]
 """Symmetric 3 by 3 matrix: 11, 12, 13, 22, 23, 33."""
 
@@ -66,24 +71,28 @@ def length_interval(values: Sequence[Fraction]) -> tuple[Fraction, Fraction]:
 
 
 def arctangent_below(t: Fraction) -> Fraction:
-    """Lower bound of atan(t) for 0 <= t < 1: the alternating series cut after a negative term."""
-    require(0 <= t < 1, "arctangent outside [0, 1)")
-    t = Fraction(math.floor(t * 2**48), 2**48)
-    value, power = Fraction(0), t
-    for k in range(120):
-        value += (-power if k % 2 else power) / (2 * k + 1)
-        power *= t * t
-    return Fraction(math.floor(value * 2**60), 2**60)
+    """Lower bound of atan(t), t >= 0."""
+    if t > 1:
+        return PI[0] / 4 + arctangent_below((t - 1) / (t + 1))
+    return PI[0] / 4 - _arctangent((1 - t) / (1 + t), 45) if 2 * t > 1 else _arctangent(t, 44)
 
 
 def arctangent_above(t: Fraction) -> Fraction:
     """Upper bound of atan(t), t >= 0."""
-    quarter = Fraction(3141592653589793239, 4 * 10**18)
-    if t <= Fraction(1, 100):
-        return t - t**3 / 3 + t**5 / 5
-    if t >= 1:
-        return quarter + (t - 1)
-    return quarter - arctangent_below((1 - t) / (1 + t))
+    if t > 1:
+        return PI[1] / 4 + arctangent_above((t - 1) / (t + 1))
+    return PI[1] / 4 - _arctangent((1 - t) / (1 + t), 44) if 2 * t > 1 else _arctangent(t, 45)
+
+
+def _arctangent(t: Fraction, terms: int) -> Fraction:
+    """Alternating series of atan(t), 0 <= t <= 1/2: an odd number of terms is above, an even below."""
+    away = math.ceil if terms % 2 else math.floor
+    power = t = Fraction(away(t * 2**100), 2**100)
+    value, square = Fraction(0), t * t
+    for k in range(terms):
+        value += (-power if k % 2 else power) / (2 * k + 1)
+        power *= square
+    return Fraction(away(value * 2**96), 2**96)
 
 
 def quadratic(M: Matrix, x: Vector) -> Fraction:

@@ -11,6 +11,7 @@ from .peak_chart import PeakChart, cubic_scale, largest_near, rate_polynomials
 from .peak_gauge import Gauge
 from .peak_numbers import (
     PEAK_DEGREE,
+    PI,
     Cubic,
     arctangent_above,
     arctangent_below,
@@ -26,14 +27,10 @@ def travel_by_angle(q: Vector, arc: Fraction, speed: Fraction) -> Fraction:
     """Travel from the angle alone: twice the arc left outside the tolerance, over the fastest rate."""
     low, high = length_interval(q)
     vector = length_interval(q[1:])
-    pi = Fraction(3141592653589793238, 10**18)
     if q[0] >= 0:
-        t = vector[0] / (high + q[0])
-        reached = 2 * arctangent_below(t) if t < 1 else pi / 2
-        if Fraction(7, 10) <= t < 1:
-            reached = pi / 2 - 2 * arctangent_above((1 - t) / (1 + t))
+        reached = 2 * arctangent_below(vector[0] / (high + q[0]))
     else:
-        reached = pi - 2 * arctangent_above(vector[1] / (low - q[0]))
+        reached = PI[0] - 2 * arctangent_above(vector[1] / (low - q[0]))
     return 2 * (reached - arc) / speed
 
 

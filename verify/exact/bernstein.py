@@ -17,17 +17,7 @@ from typing import final
 from flint import fmpq, fmpq_poly
 
 from ...models.schedule import polynomial as poly
-
-
-def rational(value: Fraction | float | int) -> fmpq:
-    """Return the exact value as a flint rational; a float is taken at its binary value."""
-    numerator, denominator = value.as_integer_ratio()
-    return fmpq(numerator, denominator)
-
-
-def fraction(value: fmpq) -> Fraction:
-    """Return a flint rational as a `Fraction`."""
-    return Fraction(int(value.p), int(value.q))
+from .rational import fraction, rational
 
 
 def _over_one(values: Sequence[Fraction | float]) -> tuple[list[int], int]:

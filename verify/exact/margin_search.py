@@ -14,7 +14,7 @@ from math import inf
 from typing import final
 
 from ..verdict import Quantity
-from .rational_quantity import rounded_down
+from .rounding import rounded_down
 
 Holds = Callable[[Fraction], bool]
 

@@ -3,20 +3,9 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from math import inf, nextafter
 
 from ..verdict import Quantity
-
-
-def rounded_down(value: Fraction) -> float:
-    """Return a float <= value."""
-    nearest = float(value)
-    return nearest if Fraction(nearest) <= value else nextafter(nearest, -inf)
-
-
-def rounded_up(value: Fraction) -> float:
-    """Return a float >= value."""
-    return 0.0 - rounded_down(-value)
+from .rounding import rounded_down, rounded_up
 
 
 def rational_quantity(
@@ -34,11 +23,7 @@ def seconds(value: Fraction) -> str:
 
 def exponential_quantity(name: str, exponent: Fraction, label: str = "") -> Quantity:
     """Quantity that encloses exp of an exact rational <= 700, by ball arithmetic."""
-    import flint
+    from .ball import enclose
 
-    with flint.ctx.workprec(128):
-        ball = flint.arb(flint.fmpq(exponent.numerator, exponent.denominator)).exp()
-        low, high = float(ball.lower()), float(ball.upper())
-    if exponent == 0:
-        return Quantity(name, 1.0, 1.0, label=label, rigorous=True)
-    return Quantity(name, nextafter(low, -inf), nextafter(high, inf), label=label, rigorous=True)
+    low, high = enclose(lambda x: x.exp(), exponent)
+    return Quantity(name, low, high, label=label, rigorous=True)

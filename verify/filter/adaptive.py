@@ -21,8 +21,9 @@ from typing import final
 import numpy as np
 
 from ...models.types import Array
-from ..exact.balls import fraction_above, fraction_below
-from ..exact.bernstein import Bernstein, rational
+from ..exact.bernstein import Bernstein
+from ..exact.rational import rational
+from ..exact.rounding import rounded_down, rounded_up
 from ..flow.stepping import Modes
 from .adaptive_tail import AdaptiveTailSystem
 from .comparison import (
@@ -95,8 +96,8 @@ class AdaptiveSystem(LawComparison):
         """Values at t = 0, on the safe side of the initial set."""
         R0, k0 = self.initial_filter, self.initial_gain
         return (
-            initial.y_low, initial.s_low, fraction_below(k0), fraction_below(R0),
-            initial.y_high, initial.s_high, fraction_above(k0), fraction_above(R0),
+            initial.y_low, initial.s_low, rounded_down(k0), rounded_down(R0),
+            initial.y_high, initial.s_high, rounded_up(k0), rounded_up(R0),
         )  # fmt: skip
 
     def contraction(self, period: float) -> float:

@@ -15,7 +15,8 @@ from fractions import Fraction
 from math import exp
 from typing import final
 
-from ..exact.bernstein import Bernstein, rational
+from ..exact.bernstein import Bernstein
+from ..exact.rational import rational
 from ..flow.stepping import Modes
 from .comparison import ATTITUDE_BOUND_LOST, ROUND_UP, TWO, filter_scale
 from .tail import PeriodicSystem

@@ -28,8 +28,9 @@ from fractions import Fraction
 from typing import final
 
 from ...models.rigid_body import RigidBody
-from ..exact.balls import ball, float_above, greatest_eigenvalue_above, least_eigenvalue_below
+from ..exact.ball import ball, float_above
 from ..exact.bernstein import Bernstein
+from ..exact.matrix import greatest_eigenvalue_above, least_eigenvalue_below
 
 ONE = Bernstein.constant(1)
 TWO = Bernstein.constant(2)

@@ -15,7 +15,7 @@ from typing import Any, final
 from ...models.schedule import Schedule
 from ...models.schedule import polynomial as poly
 from ...models.schedule.piecewise import Piece
-from ..exact.balls import ball, float_above, float_below
+from ..exact.ball import ball, float_above, float_below
 from ..exact.bisection import Box, minimum_below
 
 RELATIVE_WIDTH = 1e-9

@@ -19,7 +19,7 @@ from typing import final
 import numpy as np
 
 from ...models.schedule import Schedule
-from ..exact.balls import sqrt_below
+from ..exact.ball import sqrt_below
 from .certify import FilterLowerBound
 from .flowpipe import Box, Flowpipe
 from .over_time import angle_above

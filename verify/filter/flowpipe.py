@@ -15,8 +15,8 @@ import numpy as np
 
 from ...models.schedule import polynomial as poly
 from ...models.types import Array
-from ..exact.balls import fraction_above, fraction_below
 from ..exact.bernstein import lower_bound
+from ..exact.rounding import rounded_down, rounded_up
 from ..flow.stepping import Step
 from .sets import InitialSet
 from .tail import PeriodicSystem, Tail
@@ -103,7 +103,7 @@ class Flowpipe:
             if min(controls) >= least:
                 break
             least = min(least, lower_bound(controls, 5))
-        return fraction_below(least)
+        return rounded_down(least)
 
     def all_steps(self) -> Iterator[Step]:
         """Steps of the transient and of the tail's first period."""
@@ -182,6 +182,6 @@ def _gain_extremes(
     for i in range(parts):
         local = poly.compose_affine(shape, Fraction(j * parts + i, n * parts), Fraction(1, n * parts))
         slope = poly.bernstein(poly.scale(poly.derivative(local), parts / length))
-        gain = fraction_above(max(abs(c) for c in poly.bernstein(local)))
-        found.append((gain, fraction_below(min(slope)), fraction_above(max(slope))))
+        gain = rounded_up(max(abs(c) for c in poly.bernstein(local)))
+        found.append((gain, rounded_down(min(slope)), rounded_up(max(slope))))
     return tuple(found)

@@ -15,7 +15,8 @@ from typing import final
 import numpy as np
 
 from ...models.types import Array
-from ..exact.balls import ball, float_above, fraction_above, sqrt_below
+from ..exact.ball import ball, float_above, sqrt_below
+from ..exact.rounding import rounded_up
 from .certify import FilterLowerBound
 from .flowpipe import Flowpipe
 from .torque_bound import OUTWARD, BoxColumns, greatest_bv, torque_bounds
@@ -56,7 +57,7 @@ def bounds_over_time(floor: FilterLowerBound, horizon: Fraction, cells: int = CE
     if floor.horizon is not None and floor.horizon < horizon:
         return None
     edges = np.linspace(0.0, float(horizon), cells + 1)
-    edges[-1] = fraction_above(horizon)
+    edges[-1] = rounded_up(horizon)
     least = np.full(cells, np.inf)
     gaps, rates, speeds, torques = np.zeros((4, cells))
     root = sqrt_below(floor.bounds.least)

@@ -22,8 +22,9 @@ from typing import final
 import numpy as np
 
 from ...models.types import Array
-from ..exact.balls import fraction_below
-from ..exact.bernstein import Bernstein, rational
+from ..exact.bernstein import Bernstein
+from ..exact.rational import rational
+from ..exact.rounding import rounded_down
 from ..flow.stepping import Modes
 from .comparison import (
     ATTITUDE_BOUND_LOST,
@@ -70,9 +71,9 @@ class PersistenceSystem(LawComparison):
 
     def start(self, initial: InitialSet) -> tuple[float, ...]:
         """Values at t = 0, on the safe side of the initial set."""
-        K = fraction_below(1 / self.initial_filter)
+        K = rounded_down(1 / self.initial_filter)
         y, s = initial.y_high, initial.s_high
-        return (K, y, s, y, s, fraction_below(self.initial_filter))
+        return (K, y, s, y, s, rounded_down(self.initial_filter))
 
     def tail(self, state: Sequence[float]) -> tuple[PersistenceSystem, tuple[float, ...]]:
         """Return the same inequalities without the factors that a scaling would break."""

@@ -9,7 +9,8 @@ from math import inf, nextafter
 from typing import final
 
 from ...models.rigid_body import RigidBody
-from ..exact.balls import ball, float_above, float_below, fraction_above, sqrt_above, sqrt_below
+from ..exact.ball import ball, float_above, float_below, sqrt_above, sqrt_below
+from ..exact.rounding import rounded_up
 from .comparison import BodyBounds
 
 MAX_S = 1.4142135623730954
@@ -73,7 +74,7 @@ class InitialSet:
             reach = (max_rate or Fraction(0)) + 2 * gain_term * _greatest_bv(s_high)
             reaches.append(sqrt_above(bounds.greatest * reach * reach))
         if max_weighted_rate is not None:
-            reaches.append(fraction_above(max_weighted_rate))
+            reaches.append(rounded_up(max_weighted_rate))
         words = [f"2 acos(b0) <= {float(max_angle_deg):.6g} deg"]
         words += [f"|w(0)| <= {float(max_rate):.6g} rad/s"] if max_rate is not None else []
         if max_weighted_rate is not None:

@@ -21,7 +21,8 @@ from typing import final
 import numpy as np
 
 from ...models.types import Array
-from ..exact.balls import fraction_above, fraction_below, sqrt_above, sqrt_below
+from ..exact.ball import sqrt_above, sqrt_below
+from ..exact.rounding import rounded_down, rounded_up
 from .adaptive import AdaptiveSystem
 from .certify import FilterLowerBound
 from .comparison import BodyBounds
@@ -126,7 +127,7 @@ def torque_bounds(system: LawComparison, bounds: BodyBounds, c: BoxColumns) -> t
 
     Both are zero where g is: there u is not applied, and the law's u only mirrors g = 0.
     """
-    least, greatest = fraction_below(bounds.least), fraction_above(bounds.greatest)
+    least, greatest = rounded_down(bounds.least), rounded_up(bounds.greatest)
     root = sqrt_above(bounds.greatest)
     spin = c.y / sqrt_below(bounds.least)
     n = greatest_bv(c.S)
@@ -152,12 +153,12 @@ def _coefficient(system: LawComparison, c: BoxColumns) -> tuple[Array, Array]:
     square = 2 * g**3 * high**2
     terms = [(np.minimum.reduce(slope), np.maximum.reduce(slope))]
     if isinstance(system, PersistenceSystem):
-        lam = fraction_above(system.decay)
+        lam = rounded_up(system.decay)
         # -2 g kappa' + 2 g^3 kappa^2 b0 = -2 g lambda kappa + 2 g^3 kappa^2 (1 + 2 b0)
         terms.append((-2 * g * lam * high, np.zeros_like(g)))
         terms.append((np.minimum(square * (1 + 2 * b0_low), 0.0), 3 * square))
     elif isinstance(system, AdaptiveSystem):
-        gamma, a = fraction_above(system.learning_rate), fraction_above(system.weight)
+        gamma, a = rounded_up(system.learning_rate), rounded_up(system.weight)
         intake = np.minimum(2 * (c.y**2 + 2 * a * c.S), 2 * a * (1 + c.y**2 / (4 * a)) ** 2)
         terms.append((-2 * g**3 * gamma * c.R * intake, np.zeros_like(g)))
         terms.append((np.minimum(square * b0_low, 0.0), square))

@@ -9,9 +9,9 @@ from fractions import Fraction
 from typing import Any
 
 from ...models.lowering import UnknownOperationError
-from ..exact.balls import ball, float_above, float_below
+from ..exact.ball import ball, float_above, float_below
+from ..exact.direction import rational_quaternion
 from ..flow.run_enclosure import EnclosedRun, ExactStart, NoEnclosureError
-from ..lyapunov.exact_states import rational_quaternion
 from ..verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict, Witness
 from .question import FloorQuestion, initial_gain_term
 

@@ -24,8 +24,7 @@ from ...models.rigid_body import RigidBody
 from ...models.schedule import Schedule
 from ...models.schedule.polynomial import derivative
 from ...models.simulation import Phase, phases_between
-from ..checker import inverse_matrix
-from ..exact.balls import ball
+from ..exact.ball import ball
 
 Balls = list[Any]
 ORDER = 14
@@ -85,8 +84,7 @@ class EnclosedRun:
         ctx.cap = max(ctx.cap, ORDER + 1)  # no series is cut short
         loop = close_loop(law)
         self._rates, self._torque = _programs(loop)
-        J = body.exact_inertia
-        entries = [M[i][j] for M in (J, inverse_matrix([list(row) for row in J])) for i, j in INERTIA_ENTRIES]
+        entries = [M[i][j] for M in (body.exact_inertia, body.exact_inverse) for i, j in INERTIA_ENTRIES]
         self._constants = [[_constant(x) for x in law.parameters.values()], [_constant(x) for x in entries]]
         exact = (*start.quaternion, *start.rate, *(s.initial for s in law.controller_states))
         self._state: Balls = [ball(x) for x in exact]

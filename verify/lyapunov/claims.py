@@ -10,9 +10,10 @@ from ...models.laws import Law
 from ...models.rigid_body import RigidBody
 from ...models.schedule import Schedule
 from ..certificates.format import Certificate
+from ..exact.matrix import Rows
 from ..verdict import Claim, Verdict
 from .candidates import NoStorageError, candidate
-from .conditions import ExactRows, paper_condition, sharp_condition
+from .conditions import paper_condition, sharp_condition
 from .decay import derivative_claim, rate_claim
 from .identity import identity_claim
 
@@ -21,7 +22,7 @@ def lyapunov_claims(
     law: Law,
     body: RigidBody,
     *,
-    tolerance: ExactRows | None = None,
+    tolerance: Rows | None = None,
     schedule: Schedule | None = None,
 ) -> tuple[Claim, ...]:
     """Claims lyapunov.identity, lyapunov.derivative, lambda.paper, lambda.sharp, lambda.rate that apply.

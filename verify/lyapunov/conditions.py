@@ -10,24 +10,30 @@ box, which suffices because they are convex in J.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from fractions import Fraction
 from itertools import product
 
 from ...models.rigid_body import RigidBody
 from ..certificates.format import Certificate
-from ..checker import Matrix, Vector
+from ..exact.matrix import (
+    Matrix,
+    Rows,
+    is_positive_definite,
+    is_positive_semidefinite,
+    quadratic_form,
+    shifted,
+)
 from ..exact.rational_quantity import rational_quantity
 from ..verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict, Witness
-from .definiteness import factors, negative_direction, quadratic, shifted
+from .definiteness import Direction, factors, negative_direction
 from .forms import inertia_data
 
-ExactRows = Sequence[Sequence[Fraction]]
 PAPER = "Ram & Akella, AAS 21-402, condition on lambda"
 SHARP = "docs/theory-lyapunov.md: largest value of Q over the rate, at b0 -> 1"
 
 
-def paper_condition(lam: Fraction, body: RigidBody, *, tolerance: ExactRows | None = None) -> Claim:
+def paper_condition(lam: Fraction, body: RigidBody, *, tolerance: Rows | None = None) -> Claim:
     """Claim lambda > max(1/(2 Jmin), 1/2) (key lambda.paper)."""
     statement = f"lambda = {float(lam):.9g} 1/s exceeds max(1/(2 Jmin), 1/2)"
     half = Fraction(1, 2)
@@ -54,7 +60,7 @@ def paper_condition(lam: Fraction, body: RigidBody, *, tolerance: ExactRows | No
 
 
 def sharp_condition(
-    lam: Fraction, body: RigidBody, *, weight: Fraction = Fraction(1), tolerance: ExactRows | None = None
+    lam: Fraction, body: RigidBody, *, weight: Fraction = Fraction(1), tolerance: Rows | None = None
 ) -> Claim:
     """Claim lambda >= sqrt(a)/(2 sqrt(Jmin)) (key lambda.sharp)."""
     threshold = sharp_threshold(body, weight=weight, tolerance=tolerance)
@@ -86,7 +92,7 @@ def sharp_condition(
 
 
 def sharp_certificate(
-    lam: Fraction, body: RigidBody, *, weight: Fraction = Fraction(1), tolerance: ExactRows | None = None
+    lam: Fraction, body: RigidBody, *, weight: Fraction = Fraction(1), tolerance: Rows | None = None
 ) -> Certificate:
     """Write the certificate of lambda >= sqrt(a)/(2 sqrt(Jmin)); one the checker refuses if that is false."""
     lower = [factors(shifted(J, 4 * lam**2, weight)) for J in vertices(body.exact_inertia, tolerance)]
@@ -94,7 +100,7 @@ def sharp_certificate(
 
 
 def sharp_threshold(
-    body: RigidBody, *, weight: Fraction = Fraction(1), tolerance: ExactRows | None = None
+    body: RigidBody, *, weight: Fraction = Fraction(1), tolerance: Rows | None = None
 ) -> Quantity:
     """Enclosure of sqrt(a)/(2 sqrt(Jmin)), 1/s, by bisection on the exact condition.
 
@@ -106,11 +112,11 @@ def sharp_threshold(
     if weight <= 0:
         raise ValueError(f"the weight a must be positive, received {float(weight):g}")
     bodies = list(vertices(body.exact_inertia, tolerance))
-    if any(negative_direction(J, strict=True) is not None for J in bodies):
+    if not all(is_positive_definite(J) for J in bodies):
         raise ValueError("the tolerance reaches an inertia that is not positive definite")
 
     def holds(lam: Fraction) -> bool:
-        return all(negative_direction(shifted(J, 4 * lam**2, weight), strict=False) is None for J in bodies)
+        return all(is_positive_semidefinite(shifted(J, 4 * lam**2, weight)) for J in bodies)
 
     high = Fraction(1)
     while not holds(high):
@@ -122,7 +128,7 @@ def sharp_threshold(
     return rational_quantity("sharp_threshold", low, high, "1/s", "least lambda with V' <= 0 everywhere")
 
 
-def vertices(inertia: ExactRows, tolerance: ExactRows | None) -> Iterator[Matrix]:
+def vertices(inertia: Rows, tolerance: Rows | None) -> Iterator[Matrix]:
     """Inertias at the vertices of the box of tolerances, in the order of the certificates."""
     J = [list(row) for row in inertia]
     places = [(i, j) for i in range(3) for j in range(i, 3) if tolerance is not None and tolerance[i][j] > 0]
@@ -131,23 +137,23 @@ def vertices(inertia: ExactRows, tolerance: ExactRows | None) -> Iterator[Matrix
         for (i, j), sign in zip(reversed(places), signs, strict=True):
             assert tolerance is not None
             vertex[i][j] = vertex[j][i] = J[i][j] + sign * tolerance[i][j]
-        yield vertex
+        yield tuple(map(tuple, vertex))
 
 
 def _refuting(
-    body: RigidBody, tolerance: ExactRows | None, form: object, *, strict: bool
-) -> tuple[Matrix, Vector, Fraction] | None:
+    body: RigidBody, tolerance: Rows | None, form: object, *, strict: bool
+) -> tuple[Matrix, Direction, Fraction] | None:
     """Inertia and vector at which the condition fails strictly, with the value of the form there."""
     assert callable(form)
     for J in vertices(body.exact_inertia, tolerance):
         A = form(J)
         x = negative_direction(A, strict=strict)
-        if x is not None and (value := quadratic(A, x)) < 0:
+        if x is not None and (value := quadratic_form(A, x)) < 0:
             return J, x, value
     return None
 
 
-def _data(lam: Fraction, body: RigidBody, tolerance: ExactRows | None) -> dict[str, object]:
+def _data(lam: Fraction, body: RigidBody, tolerance: Rows | None) -> dict[str, object]:
     rows = None if tolerance is None else tuple(tuple(row) for row in tolerance)
     return {**inertia_data(body.exact_inertia, rows), "parameters": {"lambda": lam}}
 
@@ -157,7 +163,7 @@ def _not_met(
     statement: str,
     source: str,
     J: Matrix,
-    x: Vector,
+    x: Direction,
     violation: Fraction,
     name: str,
     threshold: Quantity | None = None,

@@ -10,10 +10,11 @@ from ...models.rigid_body import RigidBody
 from ...models.schedule import Schedule
 from ...models.schedule.polynomial import bernstein
 from ..certificates.format import Certificate
+from ..exact.matrix import Rows
 from ..exact.rational_quantity import rational_quantity
 from ..verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict, Witness
 from .candidates import Candidate
-from .conditions import ExactRows, sharp_condition, vertices
+from .conditions import sharp_condition, vertices
 from .derivative import DecayCertificate, NoCertificateError, certify_decay
 from .falsify import falsify
 from .identity import identity_certificate
@@ -27,7 +28,7 @@ def derivative_claim(
     candidate: Candidate,
     body: RigidBody,
     *,
-    tolerance: ExactRows | None = None,
+    tolerance: Rows | None = None,
     schedule: Schedule | None = None,
 ) -> Claim:
     """Claim V' <= 0 on the whole domain (key lyapunov.derivative), the paper's V or the law's own.
@@ -65,7 +66,7 @@ def rate_claim(
     candidate: Candidate,
     body: RigidBody,
     *,
-    tolerance: ExactRows | None = None,
+    tolerance: Rows | None = None,
     weight: Fraction | None = None,
 ) -> Claim:
     """Claim a positive certified rate: V_a' <= -rho V_a, or -rho W (key lambda.rate).
@@ -98,7 +99,7 @@ def largest_gain(schedule: Schedule) -> Fraction:
     return max(max(bernstein(shape), default=Fraction(0)) for shape in schedule.profile.shapes)
 
 
-def best_weight(lam: Fraction, body: RigidBody, tolerance: ExactRows | None = None) -> Fraction:
+def best_weight(lam: Fraction, body: RigidBody, tolerance: Rows | None = None) -> Fraction:
     """Weight a that maximises rho in V_a' <= -rho V_1, to four digits (a choice, not a proof).
 
     [[(lambda - rho) J, -(a/2) I], [-(a/2) I, (a lambda - rho) I]] >= 0 binds along Jmin; with
@@ -115,7 +116,7 @@ def best_weight(lam: Fraction, body: RigidBody, tolerance: ExactRows | None = No
 def _certify(
     candidate: Candidate,
     body: RigidBody,
-    tolerance: ExactRows | None,
+    tolerance: Rows | None,
     weight: Fraction | None,
     gain_bound: Fraction | None,
 ) -> DecayCertificate:
@@ -124,7 +125,7 @@ def _certify(
 
 
 def _refute(
-    candidate: Candidate, body: RigidBody, tolerance: ExactRows | None, weight: Fraction
+    candidate: Candidate, body: RigidBody, tolerance: Rows | None, weight: Fraction
 ) -> Refutation | None:
     found = (refute_sign(candidate, J, weight) for J in vertices(body.exact_inertia, tolerance))
     try:
@@ -139,7 +140,7 @@ def _refuted(
     candidate: Candidate,
     refutation: Refutation,
     body: RigidBody,
-    tolerance: ExactRows | None,
+    tolerance: Rows | None,
     weight: Fraction,
 ) -> Claim:
     """Claim refuted by a state, with a certificate of V' > 0 there where the checker can compute V'."""
@@ -150,7 +151,7 @@ def _refuted(
 
 
 def _by_sharp_condition(
-    candidate: Candidate, body: RigidBody, tolerance: ExactRows | None
+    candidate: Candidate, body: RigidBody, tolerance: Rows | None
 ) -> tuple[Evidence, ...]:
     """Evidence for V' <= 0 from the identity and the sharp condition; empty if one of them is missing."""
     parameters = candidate.loop.law.parameters

@@ -16,12 +16,12 @@ from typing import Any, final
 from .. import checker
 from ..certificates.format import Certificate, as_text, certificate_text
 from ..certificates.program import NotAlgebraicError
+from ..exact.matrix import Matrix
 from .candidates import Candidate
 from .forms import inertia_data, law_form, parameter_data, storage_form
 from .gram_search import Face, Gram, find_gram, largest_rate
 from .sums_of_squares import Target, split
 
-ExactRows = tuple[tuple[Fraction, ...], ...]
 BACKING_OFF = (Fraction(1, 10**7), Fraction(1, 10**6), Fraction(1, 10**5), Fraction(1, 1000), Fraction(1, 20))
 """Steps back from the solver's best rate, relative to it, tried in turn."""
 NEARLY_ZERO = 1e-7
@@ -52,9 +52,9 @@ class NoCertificateError(ValueError):
 
 def certify_decay(
     candidate: Candidate,
-    inertia: ExactRows,
+    inertia: Matrix,
     *,
-    tolerance: ExactRows | None = None,
+    tolerance: Matrix | None = None,
     weight: Fraction | None = None,
     rate: Fraction | None = None,
     gain_bound: Fraction | None = None,

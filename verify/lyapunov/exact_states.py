@@ -18,10 +18,8 @@ import casadi as ca
 from ...models.closed_loop import INERTIA_ENTRIES, INERTIA_NAMES, ClosedLoop
 from ...models.laws import Expression
 from ...models.lowering import FIELD, Program, evaluate, walk
-from ..checker import inverse_matrix
+from ..exact.matrix import Rows, inverse
 from .candidates import Candidate
-
-ExactRows = Sequence[Sequence[Fraction]]
 
 
 class IrrationalError(ArithmeticError):
@@ -92,48 +90,11 @@ class ExactState:
         }
 
 
-def rational_quaternion(quaternion: Sequence[float], *, denominator: int = 10**6) -> tuple[Fraction, ...]:
-    """Rational unit quaternion near a given one, with rational |bv|.
-
-    The cosine and sine of half the error angle come from t = tan(Phi/8)... that is, from
-    ((1 - t^2)/(1 + t^2), 2 t/(1 + t^2)); the direction from stereographic projection.
-    """
-    b0, vector = quaternion[0], list(quaternion[1:])
-    length = math.sqrt(sum(x * x for x in vector))
-    if length == 0:
-        return (Fraction(1 if b0 >= 0 else -1), Fraction(0), Fraction(0), Fraction(0))
-    direction = rational_direction([x / length for x in vector], denominator=denominator)
-    tangent = math.tan(math.atan2(length, b0) / 2)
-    t = near(tangent, denominator) if abs(tangent) < 1e8 else Fraction(10**8)
-    cosine, sine = (1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)
-    return (cosine, *(sine * x for x in direction))
-
-
-def near(x: float, denominator: int) -> Fraction:
-    """Return a rational near x, as fine relative to x as the denominator allows for numbers near 1."""
-    scale = 10 ** max(0, -math.floor(math.log10(abs(x)))) if x else 1
-    return Fraction(x * scale).limit_denominator(denominator) / scale
-
-
-def rational_direction(vector: Sequence[float], *, denominator: int = 10**6) -> tuple[Fraction, ...]:
-    """Rational unit vector near a given unit vector (3,), by stereographic projection from its far pole."""
-    pole = max(range(3), key=lambda i: abs(vector[i]))
-    sign = 1 if vector[pole] >= 0 else -1
-    others = [i for i in range(3) if i != pole]
-    p = [near(vector[i] / (1 + abs(vector[pole])), denominator) for i in others]
-    square = p[0] * p[0] + p[1] * p[1]
-    result = [Fraction(0)] * 3
-    result[pole] = sign * (1 - square) / (1 + square)
-    for i, x in zip(others, p, strict=True):
-        result[i] = 2 * x / (1 + square)
-    return tuple(result)
-
-
 @final
 class ExactDerivative:
     """V', W and the claimed right side of a candidate at rational states."""
 
-    def __init__(self, candidate: Candidate, inertia: ExactRows, *, weight: Fraction = Fraction(1)) -> None:
+    def __init__(self, candidate: Candidate, inertia: Rows, *, weight: Fraction = Fraction(1)) -> None:
         loop = candidate.loop
         self._loop, self._weight = loop, weight
         rate = loop.total_derivative(candidate.value)  # by J^-1: a law's own word on kappa' is no evidence
@@ -143,8 +104,7 @@ class ExactDerivative:
         self._program = program_of(
             loop, extra, [rate, candidate.reference, right if self._has_right else rate]
         )
-        inverse = inverse_matrix([list(row) for row in inertia])
-        self._body = [M[i][j] for M in (inertia, inverse) for i, j in INERTIA_ENTRIES]
+        self._body = body_entries(inertia)
 
     def at(self, state: ExactState) -> tuple[Fraction, Fraction, Fraction]:
         """(V', W, claimed right side), exactly."""
@@ -173,6 +133,11 @@ def loop_arguments(loop: ClosedLoop, state: ExactState, body: Sequence[Fraction]
     ]
 
 
-def entries(inertia: ExactRows) -> dict[str, Fraction]:
+def body_entries(inertia: Rows) -> list[Fraction]:
+    """Return the exact numbers of `ClosedLoop.body`: J's upper triangle, then that of J^-1."""
+    return [M[i][j] for M in (inertia, inverse(inertia)) for i, j in INERTIA_ENTRIES]
+
+
+def entries(inertia: Rows) -> dict[str, Fraction]:
     """Upper triangle of J by name."""
     return {name: inertia[i][j] for name, (i, j) in zip(INERTIA_NAMES, INERTIA_ENTRIES, strict=True)}

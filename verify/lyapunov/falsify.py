@@ -23,16 +23,10 @@ from ...models.lowering import evaluate
 from ...models.rigid_body import RigidBody
 from ...models.schedule import Schedule
 from ...models.types import Array
+from ..exact.direction import near, rational_quaternion
 from ..verdict import Witness
 from .candidates import Candidate
-from .exact_states import (
-    EXACT,
-    ExactState,
-    loop_arguments,
-    near,
-    program_of,
-    rational_quaternion,
-)
+from .exact_states import EXACT, ExactState, loop_arguments, program_of
 from .refutation import Refutation, at_state
 
 MIN_ANGLE = 1e-3

@@ -13,7 +13,9 @@ from typing import final
 import numpy as np
 
 from ...models.types import Array
-from ..checker import Exponents, Matrix, Ring, is_positive_definite
+from ..checker import Exponents, Ring
+from ..exact import matrix
+from ..exact.matrix import Matrix
 from .cone_program import maximise_level
 from .rounding import fit_exactly, rational_null_space
 from .sums_of_squares import Square, Target, Terms, square_terms
@@ -83,7 +85,7 @@ def largest_rate(ring: Ring, targets: list[Target]) -> RateSearch | None:
     reference_column: list[float] = []
     keys = []
     for target in targets:
-        bases = [_identity(len(square.basis)) for square in target.squares]
+        bases = [matrix.rows(matrix.identity(len(square.basis))) for square in target.squares]
         equations = _equations(ring, target.squares, bases)
         fixed, reference = _vector(equations, target.fixed), _vector(equations, target.reference)
         if fixed is None or reference is None:
@@ -134,7 +136,11 @@ def find_gram(
 
 def _search(ring: Ring, target: Target, goal: Terms, start: tuple[Matrix, ...] | None) -> Face | None:
     """Go down the faces of the cone, from the whole of it or from a neighbour's, to an interior point."""
-    bases = [_identity(len(square.basis)) for square in target.squares] if start is None else list(start)
+    bases = (
+        [matrix.rows(matrix.identity(len(square.basis))) for square in target.squares]
+        if start is None
+        else list(start)
+    )
     for _ in range(FACES):
         equations = _equations(ring, target.squares, bases)
         f = _vector(equations, goal)
@@ -160,10 +166,6 @@ def _exact(face: Face, goal: Terms) -> list[Gram] | None:
     right = [goal.get(key, Fraction(0)) for key in rows]
     entries = fit_exactly(face.equations.matrix, right, list(face.guess), face.level)
     return None if entries is None else _assemble(face, entries)
-
-
-def _identity(n: int) -> Matrix:
-    return [[Fraction(int(i == j)) for j in range(n)] for i in range(n)]
 
 
 def _equations(ring: Ring, squares: tuple[Square, ...], bases: list[Matrix]) -> _Equations:
@@ -232,14 +234,7 @@ def _assemble(face: Face, entries: list[Fraction]) -> list[Gram] | None:
     for square, B, H in zip(face.squares, face.bases, reduced, strict=True):
         if not B:
             continue
-        if not is_positive_definite(H):
+        if not matrix.is_positive_definite(H):
             return None
-        result.append(Gram(square, _congruent(H, B)))
+        result.append(Gram(square, matrix.congruent(H, B)))
     return result
-
-
-def _congruent(H: Matrix, B: Matrix) -> Matrix:
-    """Return B'HB."""
-    size, n = range(len(B)), range(len(B[0]))
-    HB = [[sum((H[p][q] * B[q][j] for q in size if B[q][j]), Fraction(0)) for j in n] for p in size]
-    return [[sum((B[p][i] * HB[p][j] for p in size if B[p][i]), Fraction(0)) for j in n] for i in n]

@@ -9,10 +9,12 @@ from ...models.closed_loop import ClosedLoop
 from .. import checker
 from ..certificates.format import Certificate, certificate_text
 from ..certificates.program import NotAlgebraicError
+from ..exact.direction import rational_quaternion
+from ..exact.matrix import Rows
 from ..exact.rational_quantity import rational_quantity
 from ..verdict import Claim, Evidence, EvidenceKind, Verdict, Witness
 from .candidates import Candidate
-from .exact_states import ExactDerivative, ExactRows, ExactState, rational_quaternion
+from .exact_states import ExactDerivative, ExactState
 from .forms import law_form, storage_form
 
 SOURCE = "docs/theory-lyapunov.md; Ram & Akella, AAS 21-402"
@@ -37,7 +39,7 @@ def identity_certificate(candidate: Candidate) -> tuple[Certificate, tuple[str, 
     return certificate, finding.claim
 
 
-def identity_claim(candidate: Candidate, inertia: ExactRows) -> Claim | None:
+def identity_claim(candidate: Candidate, inertia: Rows) -> Claim | None:
     """Claim the identity (key lyapunov.identity); None for a law without a stated closed form.
 
     The proof holds for every inertia and all positive parameters; the one given serves to refute.
@@ -71,7 +73,7 @@ def identity_claim(candidate: Candidate, inertia: ExactRows) -> Claim | None:
     )
 
 
-def refute_identity(candidate: Candidate, inertia: ExactRows) -> Witness | None:
+def refute_identity(candidate: Candidate, inertia: Rows) -> Witness | None:
     """State where V' and the stated closed form differ, exactly; None if a few random states show none."""
     derivative = ExactDerivative(candidate, inertia)
     generator = random.Random(1)  # noqa: S311 (any state will do)

@@ -12,13 +12,13 @@ from ...models.rigid_body import RigidBody
 from .. import checker
 from ..certificates.format import Certificate, certificate_text
 from ..certificates.program import NotAlgebraicError
-from ..checker import Matrix
+from ..exact.direction import rational_direction, sphere_point
+from ..exact.matrix import Rows, shifted
 from ..exact.rational_quantity import rational_quantity
 from ..verdict import Witness
 from .candidates import Candidate
-from .conditions import ExactRows
-from .definiteness import negative_direction, shifted
-from .exact_states import ExactDerivative, ExactState, rational_direction
+from .definiteness import negative_direction
+from .exact_states import ExactDerivative, ExactState
 from .forms import inertia_data, law_form, parameter_data, storage_form
 
 SIZES = tuple(Fraction(1, 2**n) for n in range(2, 40, 3))
@@ -30,11 +30,11 @@ class Refutation:
     """A state with V' > 0 at one inertia, exactly."""
 
     state: ExactState
-    inertia: Matrix
+    inertia: Rows
     witness: Witness
 
 
-def at_state(candidate: Candidate, J: Matrix, weight: Fraction, state: ExactState) -> Refutation | None:
+def at_state(candidate: Candidate, J: Rows, weight: Fraction, state: ExactState) -> Refutation | None:
     """Return the refutation by a state, or None if V' <= 0 there.
 
     Raises
@@ -52,7 +52,7 @@ def at_state(candidate: Candidate, J: Matrix, weight: Fraction, state: ExactStat
     return Refutation(state, J, witness)
 
 
-def refute_sign(candidate: Candidate, J: Matrix, weight: Fraction) -> Refutation | None:
+def refute_sign(candidate: Candidate, J: Rows, weight: Fraction) -> Refutation | None:
     """State of the family's own construction with V' > 0 at one inertia, or None."""
     tried = (at_state(candidate, J, weight, state) for state in _family_states(candidate, J, weight))
     return next((found for found in tried if found is not None), None)
@@ -63,7 +63,7 @@ def counterexample(
     refutation: Refutation,
     body: RigidBody,
     *,
-    tolerance: ExactRows | None,
+    tolerance: Rows | None,
     weight: Fraction,
 ) -> Certificate | None:
     """Certificate of V' > 0 that the checker accepts; None for laws it cannot compute."""
@@ -89,7 +89,7 @@ def counterexample(
     return certificate if all(finding.valid for finding in findings) else None
 
 
-def _family_states(candidate: Candidate, J: Matrix, weight: Fraction) -> Iterator[ExactState]:
+def _family_states(candidate: Candidate, J: Rows, weight: Fraction) -> Iterator[ExactState]:
     """States with g = 0 near the equilibrium: bv = s x, Omega = 2 lambda s x with 4 lambda^2 x'Jx < a x'x.
 
     There Q = s^2 lambda (a - 4 lambda^2 x'Jx) + O(s^4) > 0.
@@ -105,7 +105,7 @@ def _family_states(candidate: Candidate, J: Matrix, weight: Fraction) -> Iterato
     for digits in (10**3, 10**6, 10**12):
         n = rational_direction([float(v) / length for v in x], denominator=digits)
         for t in SIZES:
-            cosine, sine = (1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)
+            cosine, sine = sphere_point([t])
             yield ExactState(
                 quaternion=(cosine, *(sine * v for v in n)),
                 rate=tuple(2 * lam * sine * v for v in n),

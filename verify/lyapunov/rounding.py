@@ -8,7 +8,9 @@ from fractions import Fraction
 import numpy as np
 
 from ...models.types import Array
-from ..checker import Matrix
+from ..exact import matrix
+from ..exact.matrix import Matrix
+from ..exact.rational import fraction, rational
 
 SMALL_DENOMINATOR = 64
 """Null vectors are looked for among rationals up to this denominator."""
@@ -26,8 +28,6 @@ def fit_exactly(
     level : float
         Least eigenvalue that the guess has to spare; the guess is rounded far more finely.
     """
-    from flint import fmpq, fmpq_mat
-
     bits = 20 + max(0, math.ceil(-math.log2(level)))
     rounded = [Fraction(round(x * 2**bits), 2**bits) for x in guess]
     residual = [
@@ -36,17 +36,16 @@ def fit_exactly(
     ]
     keep = _independent(rows, len(guess))
     n = len(keep)
-    normal = fmpq_mat(n, n)
+    normal = matrix.zeros(n, n)
     for p in range(n):
         for q in range(p, n):
             short, long = sorted((rows[keep[p]], rows[keep[q]]), key=len)
             dot = sum((a * long[j] for j, a in short.items() if j in long), Fraction(0))
-            normal[p, q] = normal[q, p] = fmpq(dot.numerator, dot.denominator)
-    side = fmpq_mat(n, 1, [fmpq(residual[k].numerator, residual[k].denominator) for k in keep])
-    multipliers = normal.solve(side)
+            normal[p, q] = normal[q, p] = rational(dot)
+    multipliers = normal.solve(matrix.of([[residual[k]] for k in keep]))
     fitted = list(rounded)
     for p, k in enumerate(keep):
-        y = Fraction(int(multipliers[p, 0].p), int(multipliers[p, 0].q))
+        y = fraction(multipliers[p, 0])
         for j, a in rows[k].items():
             fitted[j] += y * a
     exact = all(
@@ -58,20 +57,11 @@ def fit_exactly(
 
 def _independent(rows: list[dict[int, Fraction]], unknowns: int) -> list[int]:
     """Numbers of a largest set of linearly independent equations."""
-    from flint import fmpq, fmpq_mat
-
-    transposed = fmpq_mat(unknowns, len(rows))
+    transposed = matrix.zeros(unknowns, len(rows))
     for r, row in enumerate(rows):
         for j, a in row.items():
-            transposed[j, r] = fmpq(a.numerator, a.denominator)
-    echelon, rank = transposed.rref()
-    pivots, column = [], 0
-    for i in range(rank):
-        while echelon[i, column] == 0:
-            column += 1
-        pivots.append(column)
-        column += 1
-    return pivots
+            transposed[j, r] = rational(a)
+    return matrix.echelon(transposed)[1]
 
 
 def rational_null_space(gram: Array, basis: Matrix, tolerance: float) -> Matrix:
@@ -98,11 +88,7 @@ def rational_null_space(gram: Array, basis: Matrix, tolerance: float) -> Matrix:
         for r, pivot in enumerate(pivots):
             row[pivot] = -rational[r][j]
         complement.append(row)
-    width = len(basis[0])
-    return [
-        [sum((row[i] * basis[i][k] for i in range(len(basis)) if row[i]), Fraction(0)) for k in range(width)]
-        for row in complement
-    ]
+    return matrix.rows(matrix.of(complement) * matrix.of(basis)) if complement else ()
 
 
 def _echelon(rows: Array) -> tuple[Array, list[int]]:

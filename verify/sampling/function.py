@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Any, final
 
 import casadi as ca
@@ -127,16 +126,3 @@ def _in_coordinates(
     arguments = [coordinates, loop.parameters, loop.body, ca.vertcat(*extra.values())]
     function = ca.Function("derivative", arguments, results)
     return DerivativeFunction(loop, function, in_family, augmented)
-
-
-def exact_body(inertia: tuple[tuple[Fraction, ...], ...]) -> list[Fraction]:
-    """The 12 exact numbers of `ClosedLoop.body`: J's upper triangle, then that of J^-1."""
-    J = inertia
-    minors = [[Fraction(0)] * 3 for _ in range(3)]
-    for i in range(3):
-        for j in range(3):
-            a, b, c, d = (j + 1) % 3, (j + 2) % 3, (i + 1) % 3, (i + 2) % 3
-            minors[i][j] = J[a][c] * J[b][d] - J[a][d] * J[b][c]
-    det = sum((J[0][i] * minors[i][0] for i in range(3)), Fraction(0))
-    upper = [(i, j) for i in range(3) for j in range(i, 3)]
-    return [J[i][j] for i, j in upper] + [minors[i][j] / det for i, j in upper]

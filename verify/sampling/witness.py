@@ -11,14 +11,16 @@ from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, Literal
 
-import numpy as np
-
 from ...models.lowering import FIELD, evaluate, walk
 from ...models.rigid_body import RigidBody
 from ...models.types import Array
+from ..exact.ball import float_above, float_below
+from ..exact.direction import sphere_point
+from ..exact.rational import rational
+from ..lyapunov.exact_states import body_entries
 from ..verdict import Quantity, Witness
 from .domain import SampledDomain
-from .function import RESULTS, DerivativeFunction, exact_body
+from .function import RESULTS, DerivativeFunction
 
 PRECISION = 256
 """Bits of the balls."""
@@ -50,16 +52,18 @@ def exact_witness(
     parameters = list(check.loop.law.parameters.values())
     # J_min enters only the paper's bound, which no witness uses.
     extra = [weight, gain_target, Fraction(0)]
-    arguments = [state, parameters, exact_body(body.exact_inertia), extra]
+    arguments = [state, parameters, body_entries(body.exact_inertia), extra]
     values = dict(zip(RESULTS, _evaluate(check.function, arguments), strict=True))
     if violated == "rate":
         violation, name = values["rate"], "V'"
     else:
         violation, name = values["by_differentiation"] - values["stated"], "V' minus V' as stated"
-    low, high = _enclosure(violation)
+    if not violation.is_finite():
+        return None
+    low, high = float_below(violation), float_above(violation)
     if violated == "rate" and not low > 0:
         return None
-    if low <= 0 <= high or not np.isfinite(high - low):
+    if low <= 0 <= high:
         return None
     return Witness(
         description=f"{name} at a rational state, evaluated in balls of {PRECISION} bits",
@@ -74,20 +78,19 @@ def _rational_state(coordinates: Array, domain: SampledDomain) -> list[Fraction]
     q = [float(x) for x in coordinates[:4]]
     sign = 1 if q[0] >= 0 else -1
     s = [Fraction(x / (1 + abs(q[0]))).limit_denominator(DENOMINATOR) for x in q[1:]]
-    square = sum((x * x for x in s), Fraction(0))
-    attitude = [sign * (1 - square) / (1 + square), *(2 * x / (1 + square) for x in s)]
+    scalar, *vector = sphere_point(s)
     others = []
     for value, a, b in zip(coordinates[4:], low, high, strict=True):
         near = Fraction(float(value)).limit_denominator(DENOMINATOR)
         others.append(min(max(near, Fraction(a)), Fraction(b)))
-    return attitude + others
+    return [sign * scalar, *vector, *others]
 
 
 def _evaluate(function: Any, arguments: Sequence[Sequence[Fraction]]) -> list[Any]:
     import flint
 
     with flint.ctx.workprec(PRECISION):
-        balls = [[_ball(x) for x in row] for row in arguments]
+        balls = [[flint.arb(rational(x)) for x in row] for row in arguments]
         results = evaluate(walk(function), ball_table(), balls, flint.arb)
     return [row[0] for row in results]
 
@@ -105,18 +108,6 @@ def _method(name: str) -> Callable[[Any], Any]:
         return getattr(x, name)()
 
     return apply
-
-
-def _ball(x: Fraction) -> Any:
-    import flint
-
-    return flint.arb(flint.fmpq(x.numerator, x.denominator))
-
-
-def _enclosure(ball: Any) -> tuple[float, float]:
-    """Floats below and above a ball."""
-    low, high = float(ball.lower()), float(ball.upper())
-    return float(np.nextafter(low, -np.inf)), float(np.nextafter(high, np.inf))
 
 
 def _named(check: DerivativeFunction, state: Sequence[Fraction]) -> dict[str, float | list[float]]:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ....models.rigid_body import ExactMatrix, RigidBody
 from ....models.types import Array
-from ....verify.exact.balls import greatest_eigenvalue_above, least_eigenvalue_below
+from ....verify.exact.matrix import greatest_eigenvalue_above, least_eigenvalue_below
 from ..program.constraints import ConeConstraint, RateConstraint
 from .chart import Vector, square_root
 

@@ -13,7 +13,7 @@ import numpy as np
 from ....models.laws import FreeMotion
 from ....models.schedule.polynomial import ZERO
 from ....models.simulation import Phase
-from ....verify.exact.balls import ball, exact_above
+from ....verify.exact.ball import ball, exact_above
 from ....verify.flow.run_enclosure import EnclosedRun, ExactStart, NoEnclosureError
 from ...problem import TransferProblem
 from ..sets.chart import Quaternion, square_root

@@ -28,7 +28,8 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import final
 
-from ....verify.exact.balls import ball, exact_above, greatest_eigenvalue_above
+from ....verify.exact.ball import ball, exact_above
+from ....verify.exact.matrix import greatest_eigenvalue_above
 from ..sets.chart import Vector, square_root
 from ..sets.momentum_sets import MomentumSet, length_above
 from ..sets.rate import ExactMatrix, exact_inverse

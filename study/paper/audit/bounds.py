@@ -9,11 +9,12 @@ import numpy as np
 
 from ....models.closed_loop import close_loop
 from ....models.laws import AdaptiveScaling, PersistenceFilter
-from ....verify.exact.balls import ball, float_above
+from ....verify.exact.ball import ball, float_above
+from ....verify.exact.direction import rational_direction
 from ....verify.exact.rational_quantity import rational_quantity
 from ....verify.lyapunov.candidates import bracket_terms
 from ....verify.lyapunov.conditions import sharp_threshold
-from ....verify.lyapunov.exact_states import ExactState, rational_direction
+from ....verify.lyapunov.exact_states import ExactState
 from ....verify.verdict import Witness
 from .item import J1, AuditItem, exact_values, proved, refuted, tilted_state, undecided, vanishes
 

@@ -4,17 +4,14 @@ from fractions import Fraction as F
 
 import numpy as np
 import pytest
-from intermit.verify.exact.balls import (
-    enclose,
-    fraction_above,
-    fraction_below,
+from intermit.verify.exact.ball import enclose, sqrt_above, sqrt_below
+from intermit.verify.exact.bisection import minimum_below
+from intermit.verify.exact.matrix import (
     greatest_eigenvalue_above,
     is_positive_semidefinite,
     least_eigenvalue_below,
-    sqrt_above,
-    sqrt_below,
 )
-from intermit.verify.exact.bisection import minimum_below
+from intermit.verify.exact.rounding import rounded_down, rounded_up
 from problems import J1, J2
 
 VALUES = [F(2), F(1, 3), F(10**30 + 1), F(1, 7**20), F(9, 4)]
@@ -24,8 +21,8 @@ VALUES = [F(2), F(1, 3), F(10**30 + 1), F(1, 7**20), F(9, 4)]
 def test_roots_and_rationals_are_bounded_on_their_side(value):
     assert F(sqrt_below(value)) ** 2 <= value <= F(sqrt_above(value)) ** 2
     assert sqrt_above(value) <= sqrt_below(value) * (1 + 1e-15)
-    assert F(fraction_below(value)) <= value <= F(fraction_above(value))
-    assert fraction_above(value) <= np.nextafter(fraction_below(value), np.inf)
+    assert F(rounded_down(value)) <= value <= F(rounded_up(value))
+    assert rounded_up(value) <= np.nextafter(rounded_down(value), np.inf)
 
 
 def test_a_pole_has_no_enclosure():
