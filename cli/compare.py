@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from ..study.options import CompareOptions, help_of
 from .options import Debug, JsonFile, ScenarioFile
 
 
@@ -15,6 +16,9 @@ def run(
         list[str] | None,
         typer.Option(metavar="FILE.py:CLASS[,NAME=VALUE]", help="Also a law of your own."),
     ] = None,
+    at_horizon: Annotated[
+        bool, typer.Option("--at-horizon", help=help_of(CompareOptions, "at_horizon"))
+    ] = False,
     json: JsonFile = None,
     debug: Debug = False,
 ) -> int:
@@ -28,5 +32,5 @@ def run(
 
     loaded = with_laws(open_scenario(scenario), *(law_from_words(words) for words in law or ()))
     with progress(loaded.name):
-        record = comparison_record(run_comparison(loaded))
-    return finish(record, json)
+        found = run_comparison(loaded, CompareOptions(at_horizon=at_horizon))
+    return finish(comparison_record(found), json, failed=not found.is_complete)

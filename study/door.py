@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Literal
 
 from ..errors import InputError
 from ..scenario import Scenario, load_scenario
-from .options import CheckOptions, NormKey, OptimumOptions, ReportOptions, SolverKey
+from .options import CheckOptions, CompareOptions, NormKey, OptimumOptions, ReportOptions, SolverKey
 
 if TYPE_CHECKING:
     from ..optim.tuning.tune import Tuned
@@ -172,11 +172,17 @@ def bound(source: Source) -> Claim:
     return own_bound_claim(_scenario(source))
 
 
-def compare(source: Source) -> Comparison:
-    """Put every law beside the optimum for its own settling time: `.rows`, one a law."""
+def compare(source: Source, *, at_horizon: bool = False) -> Comparison:
+    """Put every law beside the optimum for its own settling time: `.rows`, one a law.
+
+    Parameters
+    ----------
+    source : a scenario, or its file's path
+    at_horizon : compare a law that does not settle too, by how near it comes at the horizon
+    """
     from .compare.run import run_comparison
 
-    return run_comparison(_scenario(source))
+    return run_comparison(_scenario(source), CompareOptions(at_horizon=at_horizon))
 
 
 def tune(

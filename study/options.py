@@ -85,6 +85,23 @@ class OptimumOptions:
 
 @final
 @dataclass(frozen=True, kw_only=True)
+class CompareOptions:
+    """How laws are put beside the optimum.
+
+    Attributes
+    ----------
+    at_horizon : a law that does not settle is compared too: with the least peak that comes as near to the
+        target as it did by the horizon
+    """
+
+    at_horizon: bool = field(
+        default=False,
+        metadata=_says("Compare a law that does not settle by how near it comes at the horizon."),
+    )
+
+
+@final
+@dataclass(frozen=True, kw_only=True)
 class ReportOptions:
     """What a report holds beside the check.
 

@@ -7,12 +7,11 @@ certified bound <= optimum <= law's peak must hold; the three are computed apart
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import TYPE_CHECKING, Literal, final
 
 from ..norms import Euclidean, LargestComponent, Norm
 from ..problem import Terminal, TransferProblem, WindowProfile
-from .measure import LawRun
+from .measure import Goal, LawRun
 
 if TYPE_CHECKING:
     from ..bounds.bound import LowerBound
@@ -36,7 +35,7 @@ class EqualTerms:
 
     Attributes
     ----------
-    problem : the transfer in the law's own settling time, to its own terminal balls
+    problem : the transfer to the law's own goal
     law_peak, optimum, bound : N m; optimum is None where the search gave no checked answer
     answer, certificate : where optimum and bound come from
     """
@@ -51,8 +50,8 @@ class EqualTerms:
 
     @property
     def ratio_to_optimum(self) -> float | None:
-        """Law's peak over the optimum found."""
-        return None if self.optimum is None else self.law_peak / self.optimum
+        """Law's peak over the optimum found; None where no torque is needed at all."""
+        return self.law_peak / self.optimum if self.optimum else None
 
     @property
     def ratio_to_bound(self) -> float:
@@ -62,37 +61,38 @@ class EqualTerms:
     @property
     def gap(self) -> float | None:
         """(optimum - bound)/optimum: how much of the optimum is not certified."""
-        return None if self.optimum is None else (self.optimum - self.bound) / self.optimum
+        return (self.optimum - self.bound) / self.optimum if self.optimum else None
 
 
-def problem_of(run: LawRun, norm: str, profile: WindowProfile = WindowProfile.FULL) -> TransferProblem:
-    """The transfer a law made, as a problem for any controller.
-
-    Raises
-    ------
-    ValueError
-        If the law did not settle within its run.
-    """
-    if run.figures.settling is None:
-        raise ValueError(f"{run.label} does not settle by {float(run.task.horizon):g} s: nothing to compare")
+def problem_of(run: LawRun, norm: str, goal: Goal, profile: WindowProfile) -> TransferProblem:
+    """The transfer a law made, as a problem for any controller."""
     task = run.task
     return TransferProblem.through(
         task.schedule,
         body=task.body,
-        horizon=Fraction(run.figures.settling),
+        horizon=goal.time,
         attitude=task.quaternion,
         rate=task.rate,
         norm=NORMS[norm],
-        terminal=Terminal(attitude=task.attitude_tolerance, rate=task.rate_tolerance),
+        terminal=Terminal(attitude=goal.attitude, rate=goal.rate),
         profile=profile,
     )
 
 
-def on_equal_terms(run: LawRun, norm: NormName) -> EqualTerms:
+def on_equal_terms(
+    run: LawRun, norm: NormName, *, goal: Goal | None = None, profile: WindowProfile = WindowProfile.FULL
+) -> EqualTerms:
     """Find the optimum and the certified bound for a law's own transfer, and check their order.
+
+    Parameters
+    ----------
+    goal : the end asked for; None for the law's settling
+    profile : GAIN compares the command u through w = g, FULL the applied torque g u
 
     Raises
     ------
+    ValueError
+        If the law did not settle within its run and no goal is given.
     OrderError
         If certified bound <= optimum <= law is broken.
     """
@@ -100,11 +100,15 @@ def on_equal_terms(run: LawRun, norm: NormName) -> EqualTerms:
     from ..peak import minimum_peak
     from ..peak.search.result import Standing
 
-    problem = problem_of(run, norm)
+    goal = goal if goal is not None else run.goal
+    if goal is None:
+        raise ValueError(f"{run.label} does not settle by {float(run.task.horizon):g} s: nothing to compare")
+    problem = problem_of(run, norm, goal, profile)
+    peak = run.peak(norm, commanded=profile is WindowProfile.GAIN)
     answer = minimum_peak(problem)
     certificate = certified_lower_bound(problem)
     optimum = answer.peak if answer.standing is Standing.CHECKED else None
-    terms = EqualTerms(norm, problem, run.peak(norm), optimum, certificate.value, answer, certificate)
+    terms = EqualTerms(norm, problem, peak, optimum, certificate.value, answer, certificate)
     check_order(terms.bound, terms.optimum, terms.law_peak, what=f"{run.label}, {norm}")
     return terms
 

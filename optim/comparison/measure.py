@@ -51,6 +51,22 @@ class Task:
 
 
 @final
+@dataclass(frozen=True)
+class Goal:
+    """What a law did, as an end that any controller can be asked for.
+
+    Attributes
+    ----------
+    time : transfer time, s
+    attitude, rate : Euclidean balls of |bv| and |w| (rad/s) around rest at the target
+    """
+
+    time: Fraction
+    attitude: Fraction
+    rate: Fraction
+
+
+@final
 @dataclass(frozen=True, eq=False)
 class LawRun:
     """One law on a task; its torque figures are over [0, settling], or the whole run if it never settles."""
@@ -61,14 +77,40 @@ class LawRun:
     trajectory: Trajectory
     figures: Figures
 
-    def peak(self, norm: str) -> float:
-        """Peak applied torque, N m, in the norm "component" or "euclidean"."""
-        return {
-            "component": self.figures.torque.peak_component.value,
-            "euclidean": self.figures.torque.peak_euclidean.value,
-        }[norm]
+    def peak(self, norm: str, *, commanded: bool = False) -> float:
+        """Peak of the torque g u, or of the command u, N m, in the norm "component" or "euclidean"."""
+        kind = "peak_commanded" if commanded else "peak"
+        return float(getattr(self.figures.torque, f"{kind}_{norm}").value)
+
+    @property
+    def end(self) -> tuple[float, float]:
+        """|bv| and |w| (rad/s) at the end of the run."""
+        state = self.trajectory.state(self.trajectory.end)
+        return float(np.linalg.norm(state[1:4])), float(np.linalg.norm(state[4:7]))
+
+    @property
+    def goal(self) -> Goal | None:
+        """Within the task's tolerances by the settling time; None if it never settles or starts there."""
+        settling = self.figures.settling
+        if settling is None or settling <= 0:
+            return None
+        return Goal(Fraction(settling), self.task.attitude_tolerance, self.task.rate_tolerance)
+
+    @property
+    def end_goal(self) -> Goal | None:
+        """As near as it came by its horizon; None if its start is as near.
+
+        The balls are wider by a millionth, so that the law's own torque, rounded, reaches them.
+        """
+        attitude, rate = (Fraction(x) * (1 + WIDER) for x in self.end)
+        start = float(np.linalg.norm(self.task.quaternion[1:])), float(np.linalg.norm(self.task.rate_array))
+        if attitude >= 1 or (start[0] <= attitude and start[1] <= rate):
+            return None
+        return Goal(self.task.horizon, attitude, rate)
 
 
+WIDER = Fraction(1, 10**6)
+"""By how much the balls that a law's end is put into are wider than it."""
 ACCURATE = DOP853(rtol=1e-11, atol=1e-13)
 """Every reported number comes from a run at this setting: relative error below 1e-10."""
 

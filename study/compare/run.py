@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, final
 
@@ -9,11 +10,13 @@ import numpy as np
 
 from ...models.simulation import SimulationError
 from ...optim.comparison.equal_terms import EqualTerms, on_equal_terms
-from ...optim.comparison.measure import LawRun, run_law
+from ...optim.comparison.measure import Goal, LawRun, run_law
+from ...optim.problem import WindowProfile
 from ...reports import parts
 from ...reports.record import Record
 from ...scenario import Scenario
 from ..collections import Arrays, certified_below, collection_record, newtons, task_of
+from ..options import CompareOptions
 
 POINTS = 2001
 """Points of a torque history in the record."""
@@ -22,12 +25,23 @@ POINTS = 2001
 @final
 @dataclass(frozen=True, eq=False)
 class Row:
-    """One law: its run, or why there is none, and the terms of comparison by norm."""
+    """One law and the terms of comparison.
+
+    Attributes
+    ----------
+    run : None if it could not be carried to its horizon
+    terms : by norm; none where there is nothing to compare
+    failure : why its settling is not compared, in words; empty if it is
+    is_answered : whether what was asked was found: the comparison, or that there is nothing to compare
+    next_step : what the user can do if not
+    """
 
     label: str
     run: LawRun | None
     terms: dict[str, EqualTerms]
     failure: str = ""
+    is_answered: bool = True
+    next_step: str = ""
 
 
 @final
@@ -38,8 +52,14 @@ class Comparison:
     scenario: Scenario
     rows: tuple[Row, ...]
 
+    @property
+    def is_complete(self) -> bool:
+        """Whether every law was compared, each optimum checked, or had nothing to compare."""
+        terms = [t for row in self.rows for t in row.terms.values()]
+        return all(row.is_answered for row in self.rows) and all(t.optimum is not None for t in terms)
 
-def run_comparison(scenario: Scenario) -> Comparison:
+
+def run_comparison(scenario: Scenario, options: CompareOptions | None = None) -> Comparison:
     """Simulate each law, then find the optimum and the certified bound for the same work.
 
     Raises
@@ -47,38 +67,54 @@ def run_comparison(scenario: Scenario) -> Comparison:
     OrderError
         If certified bound <= optimum <= law is broken anywhere.
     """
-    return Comparison(scenario, tuple(_row(scenario, choice) for choice in scenario.laws))
+    options = options if options is not None else CompareOptions()
+    return Comparison(scenario, tuple(_row(scenario, choice, options) for choice in scenario.laws))
 
 
-def _row(scenario: Scenario, choice: Any) -> Row:
+def _row(scenario: Scenario, choice: Any, options: CompareOptions) -> Row:
+    label = choice.label
     try:
-        run = run_law(choice.label, choice.build(), task_of(scenario))
+        run = run_law(label, choice.build(), task_of(scenario))
     except SimulationError as error:
-        return Row(choice.label, None, {}, str(error))
-    if run.figures.settling is None:
-        return Row(choice.label, run, {}, f"does not settle by {float(scenario.horizon):g} s")
-    if run.figures.settling <= 0:
-        return Row(choice.label, run, {}, "is within the tolerances from the start: nothing to compare")
-    terms: dict[str, EqualTerms] = {norm: on_equal_terms(run, norm) for norm in scenario.compare.norms}
-    return Row(choice.label, run, terms)
+        return Row(label, None, {}, str(error), False, "mend the law or its parameters: `check` says more")
+    if run.figures.settling is not None:
+        if run.goal is None:
+            return Row(label, run, {}, "is within the tolerances from the start: nothing to compare")
+        return Row(label, run, _terms(scenario, run, run.goal))
+    failure = _unsettled(run)
+    if not options.at_horizon:
+        step = (
+            "raise simulation.horizon, change the law's parameters, loosen [tolerance], or compare how near "
+            "it comes with --at-horizon"
+        )
+        return Row(label, run, {}, failure, False, step)
+    if run.end_goal is None:
+        return Row(label, run, {}, f"{failure}, which is no nearer than it started: nothing to compare")
+    return Row(label, run, _terms(scenario, run, run.end_goal), f"{failure}: compared with coming as near")
+
+
+def _terms(scenario: Scenario, run: LawRun, goal: Goal) -> dict[str, EqualTerms]:
+    profile = WindowProfile.GAIN if scenario.compare.profile == "gain" else WindowProfile.FULL
+    return {norm: on_equal_terms(run, norm, goal=goal, profile=profile) for norm in scenario.compare.norms}
+
+
+def _unsettled(run: LawRun) -> str:
+    """How far a law is from settled at its horizon."""
+    attitude, rate = run.end
+    there = f"|bv| = {attitude:.3g}, |w| = {rate:.3g} rad/s there"
+    return f"does not settle by {float(run.task.horizon):g} s: {there}"
 
 
 def comparison_record(comparison: Comparison) -> Record:
     """The comparison as a record: one table for each norm, and the torque histories."""
     scenario, arrays = comparison.scenario, Arrays()
+    compared = [norm for norm in scenario.compare.norms if any(norm in row.terms for row in comparison.rows)]
     section = {
         "title": "Laws on equal terms",
-        "summary": "Peak applied torque of each law over its own settling time, beside the least peak any "
-        "controller needs for the same start, windows, time and terminal tolerances.",
-        "tables": [_laws_table(comparison)]
-        + [_norm_table(comparison, norm) for norm in scenario.compare.norms],
+        "summary": _summary(scenario),
+        "tables": [_laws_table(comparison)] + [_norm_table(comparison, norm) for norm in compared],
         "figures": [_torque_figure(comparison, norm, arrays) for norm in scenario.compare.norms],
-        "notes": [
-            f"Settled: |bv| <= {float(scenario.tolerance.attitude):g} and "
-            f"|w| <= {float(scenario.tolerance.rate):g} rad/s for good.",
-            "certified bound <= optimum <= law was checked in every row; "
-            "the optimum is the best of several starts, not proved global: the bound is.",
-        ],
+        "notes": list(_notes(comparison)),
     }
     return collection_record(
         scenario,
@@ -87,6 +123,30 @@ def comparison_record(comparison: Comparison) -> Record:
         sections={"comparison": section},
         arrays=arrays,
     )
+
+
+def _summary(scenario: Scenario) -> str:
+    what = "Peak command u" if scenario.compare.profile == "gain" else "Peak applied torque"
+    windows = "windows, of which a share g is passed on" if scenario.compare.profile == "gain" else "windows"
+    return (
+        f"{what} of each law over its own settling time, beside the least peak any controller needs for the "
+        f"same start, {windows}, time and terminal tolerances."
+    )
+
+
+def _notes(comparison: Comparison) -> Iterator[str]:
+    tolerance = comparison.scenario.tolerance
+    attitude, rate = float(tolerance.attitude), float(tolerance.rate)
+    yield f"Settled: |bv| <= {attitude:g} and |w| <= {rate:g} rad/s for good."
+    for row in comparison.rows:
+        if row.failure:
+            step = f"; next: {row.next_step}" if row.next_step else ""
+            yield f"{row.label} {row.failure}{step}."
+    if any(row.terms for row in comparison.rows):
+        yield (
+            "certified bound <= optimum <= law was checked in every row against the optimum; "
+            "the optimum is the best of several starts, not proved global: the bound is."
+        )
 
 
 def _laws_table(comparison: Comparison) -> dict[str, Any]:
@@ -104,11 +164,11 @@ def _laws_table(comparison: Comparison) -> dict[str, Any]:
 
 def _law_cells(row: Row) -> dict[str, Any]:
     if row.run is None:
-        return {"law": row.label, "settling": row.failure}
+        return {"law": row.label, "settling": "stopped"}
     run = row.run
-    settling: Any = row.failure if run.figures.settling is None else parts.figure_of(
-        "settling", run.figures.settling, digits=6, unit="s"
-    )  # fmt: skip
+    settling: Any = "not by the horizon"
+    if run.figures.settling is not None:
+        settling = parts.figure_of("settling", run.figures.settling, digits=6, unit="s")
     floor = run.figures.filter_minimum
     return {
         "law": row.label,
@@ -166,6 +226,6 @@ def _torque_figure(comparison: Comparison, norm: str, arrays: Arrays) -> dict[st
         parts.axis("time", "s"),
         parts.axis("torque", "N m"),
         lines,
-        alt=f"Size of the applied torque of every law over its settling time, {norm} norm.",
+        alt=f"Size of the applied torque of every law over its settling time, or its whole run, {norm} norm.",
         windows=True,
     )

@@ -51,6 +51,56 @@ def test_compare_orders_every_row_and_takes_a_law_of_ones_own(scenario, tmp_path
         assert not row["optimum"]["rigorous"]
 
 
+SHORT = "\n[simulation]\nhorizon = 10\n"
+
+
+def test_a_law_that_does_not_settle_is_said_and_not_called_compared(scenario, tmp_path, capsys):
+    """Partner: the same law over the paper's horizon is compared, exit code 0, above."""
+    out = tmp_path / "compare.json"
+    scenario.write_text(SMALL + SHORT)
+    assert run(["compare", str(scenario), "--json", str(out)]) == 3
+    said = " ".join(capsys.readouterr().out.split())
+    assert "filter does not settle by 10 s: |bv| = 0.0498" in said
+    assert "--at-horizon" in said
+    assert "was checked" not in said
+    assert [t["key"] for t in record(out)["comparison"]["tables"]] == ["laws"]
+
+
+@pytest.mark.slow
+def test_a_law_that_does_not_settle_is_compared_with_coming_as_near(scenario, tmp_path, capsys):
+    out = tmp_path / "compare.json"
+    scenario.write_text(SMALL + SHORT)
+    assert run(["compare", str(scenario), "--at-horizon", "--json", str(out)]) == 0
+    assert "compared with coming as near" in " ".join(capsys.readouterr().out.split())
+    (row,) = record(out)["comparison"]["tables"][1]["rows"]
+    assert 0 < row["bound"]["low"] <= row["optimum"]["high"] <= row["peak"]["high"]
+
+
+@pytest.mark.slow
+def test_the_profile_of_the_comparison_is_heeded(scenario, tmp_path, capsys):
+    """Through w = g the command's peak is compared; it exceeds that of the torque g u."""
+    peaks = []
+    for profile in ("window", "gain"):
+        out = tmp_path / f"{profile}.json"
+        norms = 'norms = ["euclidean"]'
+        scenario.write_text(SMALL.replace(norms, f'{norms}\nprofile = "{profile}"'))
+        assert run(["compare", str(scenario), "--json", str(out)]) == 0
+        (row,) = record(out)["comparison"]["tables"][1]["rows"]
+        assert row["bound"]["low"] <= row["optimum"]["high"] <= row["peak"]["high"]
+        peaks.append(row["peak"]["low"])
+    assert "Peak command u" in " ".join(capsys.readouterr().out.split())
+    assert peaks[1] > peaks[0]
+
+
+def test_a_start_from_which_no_torque_is_needed_has_no_ratio(scenario, tmp_path):
+    out = tmp_path / "compare.json"
+    scenario.write_text(SMALL + "[initial]\naxis = [1, 1, 1]\nangle_deg = 1\n")
+    assert run(["compare", str(scenario), "--json", str(out)]) == 0
+    (row,) = record(out)["comparison"]["tables"][1]["rows"]
+    assert row["optimum"]["high"] == 0
+    assert row.get("ratio") is None
+
+
 @pytest.mark.slow
 def test_tune_reports_parameters_and_history(scenario, tmp_path):
     out = tmp_path / "tune.json"
