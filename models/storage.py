@@ -44,11 +44,12 @@ def weighted_storage(loop: ClosedLoop) -> Storage:
     Raises
     ------
     ValueError
-        If the law has no filter state R or no gain kappa: it must then bring its own.
+        If the law has no filter state R or no gain kappa.
     """
     if "R" not in loop.controller_states or loop.control.gain is None:
         raise ValueError(
-            f"law {loop.law.name} has no filter state R and gain kappa; define Law.storage for it"
+            f"law {loop.law.name} offers no storage function, and is not of the family "
+            "Omega = w + 2 g^2 kappa bv whose V is known"
         )
     a = ca.SX.sym("a_storage")
     R, Omega = loop.controller_states["R"], loop.augmented_rate

@@ -9,7 +9,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any, Literal
 
-from pydantic import Field, StrictBool, field_validator
+from pydantic import ConfigDict, Field, StrictBool, field_validator
 
 from .exact import Count, Exact, Matrix, NotNegative, Positive, PositiveSine, Text, Vector, exact
 from .questions import CheckTable, CompareTable, OptimumTable, ReportTable, StudyTable, TuneTable
@@ -101,30 +101,26 @@ class InitialSetTable(Table):
 
 
 class LawTable(Table):
-    """[[law]]: a law's `type`, its parameters, and the `label` that tables and figures show."""
+    """[[law]]: a law's `type`, its parameters, and the `label` that tables and figures show.
+
+    Which parameters there are, and what they may be, the law itself says (`Law.described`).
+    """
+
+    model_config = ConfigDict(frozen=True, extra="allow", arbitrary_types_allowed=True)
+    __pydantic_extra__: dict[str, Exact] = Field(init=False)
 
     type: Text
     label: Text | None = None
-    lambda_: Positive | None = Field(default=None, alias="lambda")
-    gamma: Positive | None = None
-    R0: Positive | None = None
-    k0: NotNegative | None = None
-    a: Positive | None = None
-    proportional: NotNegative | None = None
-    derivative: NotNegative | None = None
     file: Text | None = None
     class_: Text | None = Field(default=None, alias="class")
     parameters: dict[str, Exact] | None = None
 
 
 class LawDefaultsTable(Table):
-    """[law_defaults]: parameters that every law takes unless it states its own."""
+    """[law_defaults]: parameters that every law which has them takes unless it states its own."""
 
-    lambda_: Positive | None = Field(default=None, alias="lambda")
-    gamma: Positive | None = None
-    R0: Positive | None = None
-    k0: NotNegative | None = None
-    a: Positive | None = None
+    model_config = ConfigDict(frozen=True, extra="allow", arbitrary_types_allowed=True)
+    __pydantic_extra__: dict[str, Exact] = Field(init=False)
 
 
 class LinearTable(Table):

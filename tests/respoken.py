@@ -65,7 +65,7 @@ def respoken(record: Record, *texts: str) -> Record:
             for c, original in zip(t["columns"], originals, strict=True):
                 c["key"] = original
     for entry in sections["cases"]:
-        entry["equations"] = [next(turn)]
+        entry["equations"] = [{"title": next(turn), "typst": next(turn), "latex": next(turn)}]
     return Record.create(
         title=next(turn),
         provenance=walk(document["provenance"], ""),

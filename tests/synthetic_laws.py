@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from intermit.models.laws import LAWS
 from intermit.reports.parts import figure_of, quantity
 from synthetic_runs import LAMBDA, Array, simulate
 
@@ -136,11 +137,12 @@ def case(name: str, label: str, adaptive: bool, gamma: float, arrays: dict[str, 
     parameters = [quantity("lambda", LAMBDA, unit="1/s", rigorous=True)] + (
         [quantity("gamma", gamma, rigorous=True)] if adaptive else []
     )
-    law = "adaptive_scaling" if adaptive else "persistence_filter"
+    law = "adaptive-scaling" if adaptive else "persistence-filter"
     return {
         "key": name,
         "label": label,
         "law": law,
+        "equations": [{"title": e.title, "typst": e.typst, "latex": e.latex} for e in LAWS[law].equations],
         "parameters": parameters,
         "claims": claims,
         "runs": [one],

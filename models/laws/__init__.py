@@ -1,9 +1,12 @@
 """Control laws, one a file; `LAWS` names those a scenario file can ask for."""
 
-from .adaptive_scaling import AdaptiveScaling, AdaptiveScalingAsPrinted
+from .adaptive_scaling import AdaptiveScaling
+from .as_printed import AdaptiveScalingAsPrinted, PersistenceFilterAsPrinted
 from .base import Control, ControllerState, Expression, Law, PlantSymbols, TimeSymbols
+from .equations import Equation
 from .free_motion import FreeMotion
-from .persistence_filter import PersistenceFilter, PersistenceFilterAsPrinted
+from .parameters import Parameter, known
+from .persistence_filter import PersistenceFilter
 from .quaternion_pd import QuaternionPD
 
 LAWS: dict[str, type[Law]] = {
@@ -23,12 +26,15 @@ __all__ = [
     "AdaptiveScalingAsPrinted",
     "Control",
     "ControllerState",
+    "Equation",
     "Expression",
     "FreeMotion",
     "Law",
+    "Parameter",
     "PersistenceFilter",
     "PersistenceFilterAsPrinted",
     "PlantSymbols",
     "QuaternionPD",
     "TimeSymbols",
+    "known",
 ]

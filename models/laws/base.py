@@ -13,6 +13,9 @@ from dataclasses import dataclass, field, fields, is_dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, ClassVar, final
 
+from .equations import Equation
+from .parameters import Parameter, parameters_of
+
 if TYPE_CHECKING:
     from ..schedule import Schedule
     from ..time_signals import TimeSignal
@@ -56,11 +59,18 @@ class TimeSymbols:
 @final
 @dataclass(frozen=True)
 class ControllerState:
-    """One controller state: its name, exact initial value and unit."""
+    """One controller state: its name, exact initial value and unit.
+
+    Attributes
+    ----------
+    least : what the law keeps the state above, where it does; states are drawn from there on when V' is
+        sampled, and no proof rests on it
+    """
 
     name: str
     initial: Fraction
     unit: str = ""
+    least: Fraction | None = None
 
     def __post_init__(self) -> None:
         try:
@@ -95,10 +105,17 @@ class Law(ABC):
     """A feedback law. Subclass it as a frozen dataclass whose fields are exact parameters.
 
     Every field that holds a number becomes a CasADi symbol of the same name (a trailing
-    underscore is dropped: `lambda_` is the parameter lambda).
+    underscore is dropped: `lambda_` is the parameter lambda). Its unit and bound stand beside it:
+    `lambda_: Fraction = field(metadata=known("1/s", "> 0", "filter bandwidth"))`.
+
+    Attributes
+    ----------
+    name : what messages, certificates and scenario files call it; it proves nothing
+    equations : what reports set of it; none by default
     """
 
     name: ClassVar[str]
+    equations: ClassVar[tuple[Equation, ...]] = ()
 
     @abstractmethod
     def control(
@@ -118,6 +135,11 @@ class Law(ABC):
             raise TypeError(f"law {type(law).__name__} must be a dataclass: its fields are its parameters")
         values = {f.name.rstrip("_"): getattr(law, f.name) for f in fields(law)}
         return {key: Fraction(v) for key, v in values.items() if isinstance(v, (int, float, Fraction))}
+
+    @classmethod
+    def described(cls) -> dict[str, Parameter]:
+        """What is known of each parameter, by name: unit, bound, default, meaning."""
+        return parameters_of(cls)
 
     @property
     def controller_states(self) -> tuple[ControllerState, ...]:

@@ -3,31 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import ClassVar, final
 
-import casadi as ca
-
 from .base import Control, ControllerState, Expression, Law, PlantSymbols, TimeSymbols
-from .scaled import filter_rate, scaled_torque
+from .equations import Equation
+from .parameters import known
+from .scaled import FILTER, TORQUE, filter_rate, scaled_torque
+
+GAIN = Equation(
+    "Persistence filter: gain and Lyapunov function",
+    r"kappa &= 1/R, \ V &= R (2 (1 - beta_0) + vb(Omega)^top vb(J) vb(Omega))",
+    r"\begin{aligned}\kappa&=1/R,\\"
+    r"V&=R\,\bigl(2(1-\beta_0)+\bm\Omega^{\top}\bm J\bm\Omega\bigr)\end{aligned}",
+)
 
 
 @final
 @dataclass(frozen=True)
 class PersistenceFilter(Law):
-    """Persistence-filter law, Omega = w + (2 g^2 / R) bv.
-
-    Attributes
-    ----------
-    lambda_ : filter bandwidth lambda, 1/s, > 0
-    R0 : initial filter state R(0), s, > 0
-    """
+    """Persistence-filter law, Omega = w + (2 g^2 / R) bv."""
 
     name: ClassVar[str] = "persistence-filter"
+    equations: ClassVar[tuple[Equation, ...]] = (FILTER, TORQUE, GAIN)
 
-    lambda_: Fraction
-    R0: Fraction
+    lambda_: Fraction = field(metadata=known("1/s", "> 0", "filter bandwidth"))
+    R0: Fraction = field(metadata=known("s", "> 0", "initial filter state R(0)"))
 
     @property
     def controller_states(self) -> tuple[ControllerState, ...]:
@@ -42,36 +44,10 @@ class PersistenceFilter(Law):
         parameters: Mapping[str, Expression],
     ) -> Control:
         """Torque of the family with kappa = 1/R."""
-        return _control(plant, time, states, parameters, gain_rate_weight=None)
+        return filter_control(plant, time, states, parameters, gain_rate_weight=None)
 
 
-@final
-@dataclass(frozen=True)
-class PersistenceFilterAsPrinted(Law):
-    """The same law with its third term as printed, (2 g R'/R^2) bv without J (erratum E3)."""
-
-    name: ClassVar[str] = "persistence-filter-as-printed"
-
-    lambda_: Fraction
-    R0: Fraction
-
-    @property
-    def controller_states(self) -> tuple[ControllerState, ...]:
-        """The filter state R."""
-        return (ControllerState("R", self.R0, "s"),)
-
-    def control(
-        self,
-        plant: PlantSymbols,
-        time: TimeSymbols,
-        states: Mapping[str, Expression],
-        parameters: Mapping[str, Expression],
-    ) -> Control:
-        """Torque with the unit matrix in place of J in the term with R'."""
-        return _control(plant, time, states, parameters, gain_rate_weight=ca.SX.eye(3))
-
-
-def _control(
+def filter_control(
     plant: PlantSymbols,
     time: TimeSymbols,
     states: Mapping[str, Expression],
@@ -79,6 +55,7 @@ def _control(
     *,
     gain_rate_weight: Expression | None,
 ) -> Control:
+    """Return the law's torque; `gain_rate_weight` replaces J in its term with kappa'."""
     R = states["R"]
     R_rate = filter_rate(plant, time, R, parameters["lambda"])
     kappa, kappa_rate = 1 / R, -R_rate / R**2

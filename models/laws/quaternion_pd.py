@@ -3,11 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import ClassVar, final
 
 from .base import Control, Expression, Law, PlantSymbols, TimeSymbols
+from .equations import Equation
+from .parameters import known
+
+TORQUE = Equation(
+    "Quaternion PD: commanded torque",
+    r"vb(u) = -p thin vb(beta)_v - d thin vb(omega)",
+    r"\bm u=-p\,\bm\beta_v-d\,\bm\omega",
+)
 
 
 @final
@@ -17,17 +25,13 @@ class QuaternionPD(Law):
 
     Between windows nothing acts, so no stability is claimed in general; the law is here
     because every attitude engineer knows it.
-
-    Attributes
-    ----------
-    proportional : gain on the quaternion's vector part, N m
-    derivative : gain on the body rate, N m s
     """
 
     name: ClassVar[str] = "quaternion-pd"
+    equations: ClassVar[tuple[Equation, ...]] = (TORQUE,)
 
-    proportional: Fraction
-    derivative: Fraction
+    proportional: Fraction = field(metadata=known("N m", ">= 0", "gain p on the quaternion's vector part"))
+    derivative: Fraction = field(metadata=known("N m s", ">= 0", "gain d on the body rate"))
 
     def control(
         self,

@@ -6,9 +6,25 @@ persistence-filter law of the earlier literature, kappa = k the adaptive scaling
 
 from __future__ import annotations
 
-import casadi as ca
-
 from .base import Expression, PlantSymbols, TimeSymbols
+from .equations import Equation
+
+FILTER = Equation(
+    "Persistence filter state",
+    r"dot(R) = -lambda R + g^2 (1 + beta_0), quad R(0) > 0",
+    r"\dot R=-\lambda R+g^2(1+\beta_0),\qquad R(0)>0",
+)
+TORQUE = Equation(
+    "Commanded torque",
+    r"vb(Omega) &= vb(omega) + 2 g^2 kappa thin vb(beta)_v, \ "
+    r"vb(u) &= -2 g kappa thin vb(beta)_v times vb(J) vb(omega) - 4 dot(g) kappa thin vb(J) vb(beta)_v "
+    r"- 2 g dot(kappa) thin vb(J) vb(beta)_v \ "
+    r"&quad - 2 g kappa thin vb(J) dot(vb(beta))_v - 1/2 g kappa (1 + beta_0) vb(J) vb(Omega)",
+    r"\begin{aligned}\bm\Omega&=\bm\omega+2g^2\kappa\bm\beta_v,\\"
+    r"\bm u&=-2g\kappa\,\bm\beta_v\times\bm J\bm\omega-4\dot g\kappa\bm J\bm\beta_v"
+    r"-2g\dot\kappa\bm J\bm\beta_v\\"
+    r"&\quad-2g\kappa\bm J\dot{\bm\beta}_v-\tfrac12g\kappa(1+\beta_0)\bm J\bm\Omega\end{aligned}",
+)
 
 
 def filter_rate(plant: PlantSymbols, time: TimeSymbols, R: Expression, lam: Expression) -> Expression:
@@ -35,6 +51,8 @@ def scaled_torque(
     `gain_rate_weight` replaces J in the term with kappa': the printed persistence-filter law
     leaves J out there.
     """
+    import casadi as ca
+
     g, J, bv = time.g, plant.J, plant.bv
     weight = J if gain_rate_weight is None else gain_rate_weight
     Omega = augmented_rate(plant, time, kappa)

@@ -1,13 +1,17 @@
-"""The equations a report sets, in Typst's and LaTeX's notation.
+"""The equations a report sets: the plant's, and what each law of the record states of itself.
 
-They are words of the report, not a model: which of them are shown follows from the law's name.
+A record may come from anywhere, and Typst and LaTeX would carry out what stands in it. So an equation is set
+only if it is built of the words of formulas; any other is shown as its author wrote it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import re
+from collections.abc import Iterable, Mapping
+from typing import Any
 
-from .blocks import Equation
+from .blocks import Block, Equation, Equations, Verbatim
+from .typeset import equation_svgs
 
 PLANT = Equation(
     "Attitude and rate",
@@ -18,44 +22,63 @@ PLANT = Equation(
     r"\dot{\bm\beta}_v&=\tfrac12(\beta_0\bm\omega+\bm\beta_v\times\bm\omega),\\"
     r"\bm J\dot{\bm\omega}&=-\bm\omega\times\bm J\bm\omega+g\bm u\end{aligned}",
 )
-FILTER = Equation(
-    "Persistence filter state",
-    r"dot(R) = -lambda R + g^2 (1 + beta_0), quad R(0) > 0",
-    r"\dot R=-\lambda R+g^2(1+\beta_0),\qquad R(0)>0",
+MAX_LENGTH = 2000
+_TYPST = re.compile(r"(?:[A-Za-z0-9 .,;:+\-*/^_=<>|!'&()\[\]{}]|\\ )*")
+_LATEX = re.compile(r"(?:[A-Za-z0-9 .,;:+\-*/^_=<>|!'&()\[\]{}]|\\[A-Za-z]+|\\[,;:!\\ |{}])*")
+_TITLE = re.compile(r"[A-Za-z0-9 .,;:+\-*/=()']{1,200}")
+_COMMANDS = frozenset(
+    re.findall(
+        r"\w+",
+        """alpha beta gamma delta epsilon varepsilon zeta eta theta kappa lambda mu nu xi pi rho sigma tau phi
+        varphi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Phi Psi Omega dot ddot hat bar tilde bm
+        mathrm frac tfrac sqrt top quad qquad times cdot pm le ge leq geq ne infty int sum max min sup inf sin
+        cos tan tanh exp ln begin end left right bigl bigr big Bigl Bigr text to mapsto in partial""",
+    )
 )
-TORQUE = Equation(
-    "Commanded torque",
-    r"vb(Omega) &= vb(omega) + 2 g^2 kappa thin vb(beta)_v, \ "
-    r"vb(u) &= -2 g kappa thin vb(beta)_v times vb(J) vb(omega) - 4 dot(g) kappa thin vb(J) vb(beta)_v "
-    r"- 2 g dot(kappa) thin vb(J) vb(beta)_v \ "
-    r"&quad - 2 g kappa thin vb(J) dot(vb(beta))_v - 1/2 g kappa (1 + beta_0) vb(J) vb(Omega)",
-    r"\begin{aligned}\bm\Omega&=\bm\omega+2g^2\kappa\bm\beta_v,\\"
-    r"\bm u&=-2g\kappa\,\bm\beta_v\times\bm J\bm\omega-4\dot g\kappa\bm J\bm\beta_v"
-    r"-2g\dot\kappa\bm J\bm\beta_v\\"
-    r"&\quad-2g\kappa\bm J\dot{\bm\beta}_v-\tfrac12g\kappa(1+\beta_0)\bm J\bm\Omega\end{aligned}",
-)
-FILTER_GAIN = Equation(
-    "Persistence filter: gain and Lyapunov function",
-    r"kappa &= 1/R, \ V &= R (2 (1 - beta_0) + vb(Omega)^top vb(J) vb(Omega))",
-    r"\begin{aligned}\kappa&=1/R,\\"
-    r"V&=R\,\bigl(2(1-\beta_0)+\bm\Omega^{\top}\bm J\bm\Omega\bigr)\end{aligned}",
-)
-ADAPTIVE_GAIN = Equation(
-    "Adaptive scaling: gain and Lyapunov function",
-    r"kappa &= k, quad dot(k) = gamma R g^2 ((1 + beta_0) vb(Omega)^top vb(J) vb(Omega) "
-    r"+ 2 |vb(beta)_v|^2), \ "
-    r"V &= 2 (1 - beta_0) R + R vb(Omega)^top vb(J) vb(Omega) + (k - k^*)^2 / (2 gamma)",
-    r"\begin{aligned}\kappa&=k,\qquad\dot k=\gamma Rg^2\bigl((1+\beta_0)\bm\Omega^{\top}\bm J\bm\Omega"
-    r"+2|\bm\beta_v|^2\bigr),\\"
-    r"V&=2(1-\beta_0)R+R\,\bm\Omega^{\top}\bm J\bm\Omega+\frac{(k-k^*)^2}{2\gamma}\end{aligned}",
-)
+_ENVIRONMENTS = frozenset({"aligned", "cases", "pmatrix", "bmatrix"})
 
 
-def equations_for(laws: Iterable[str]) -> tuple[Equation, ...]:
-    """Choose the equations: the plant's always, each built-in law's own if a case is called by it."""
-    words = " ".join(laws).lower().replace("-", "_")
-    filtered, adaptive = "persistence" in words, "adaptive" in words
-    chosen = [PLANT]
-    if filtered or adaptive:
-        chosen += [FILTER, TORQUE]
-    return tuple(chosen + [FILTER_GAIN] * filtered + [ADAPTIVE_GAIN] * adaptive)
+def equation_blocks(cases: Iterable[Mapping[str, Any]]) -> tuple[Block, ...]:
+    """The plant's equations and each law's, every one once; what cannot be set, as it is written."""
+    chosen, literal = [PLANT], list[Block]()
+    for case in cases:
+        for entry in case.get("equations", ()):
+            equation = Equation(entry["title"], entry["typst"], entry["latex"])
+            if equation in chosen:
+                continue
+            if is_formula(equation) and _compiles(equation):
+                chosen.append(equation)
+            else:
+                text = f"{equation.title}\n{equation.latex}"
+                literal.append(Verbatim(f"{case['label']}: the law as its author states it", text))
+    return (Equations(tuple(chosen)), *literal)
+
+
+def is_formula(equation: Equation) -> bool:
+    """Whether an equation is built of the words of formulas alone, in both notations."""
+    typst, latex = equation.typst, equation.latex
+    if max(len(typst), len(latex)) > MAX_LENGTH or not _TITLE.fullmatch(equation.title):
+        return False
+    if not _TYPST.fullmatch(typst) or not _LATEX.fullmatch(latex) or "//" in typst or "/*" in typst:
+        return False
+    if set(re.findall(r"\\([A-Za-z]+)", latex.replace(r"\\", " "))) - _COMMANDS:
+        return False
+    return set(re.findall(r"\\(?:begin|end)\s*\{([^}]*)\}", latex)) <= _ENVIRONMENTS and _is_balanced(latex)
+
+
+def _is_balanced(latex: str) -> bool:
+    depth = 0
+    for c in latex.replace(r"\{", "").replace(r"\}", ""):
+        depth += {"{": 1, "}": -1}.get(c, 0)
+        if depth < 0:
+            return False
+    return depth == 0 and re.findall(r"\\begin\{(\w+)\}", latex) == re.findall(r"\\end\{(\w+)\}", latex)
+
+
+def _compiles(equation: Equation) -> bool:
+    """Whether Typst sets it: a misspelt word must not cost the whole report."""
+    try:
+        equation_svgs((equation,))
+    except Exception:  # whatever the compiler says of it (typst has no public class of its own for this)
+        return False
+    return True

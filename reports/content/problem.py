@@ -8,8 +8,8 @@ from typing import Any
 
 from ..record import Record
 from ..values import thaw
-from .blocks import Axis, Block, Cell, Chapter, Chart, Charts, Equations, Facts, Line, Table, Text, Verbatim
-from .equations import equations_for
+from .blocks import Axis, Block, Cell, Chapter, Chart, Charts, Facts, Line, Table, Text, Verbatim
+from .equations import equation_blocks
 from .wording import plural, shared
 
 MAX_WINDOWS = 300
@@ -25,7 +25,6 @@ def shaded(record: Record) -> tuple[tuple[float, float], ...]:
 def problem_chapter(record: Record) -> Chapter | None:
     """Echo the scenario and set the equations."""
     scenario = record.sections.get("scenario")
-    laws = [case["law"] for case in record.sections.get("cases", ())]
     blocks: list[Block] = []
     if scenario:
         if scenario.get("description"):
@@ -35,15 +34,8 @@ def problem_chapter(record: Record) -> Chapter | None:
     parameters = _parameters(record)
     if parameters:
         blocks.append(parameters)
-    if laws:
-        blocks.append(Equations(equations_for(laws)))
-        for case in record.sections.get("cases", ()):
-            if case.get("equations"):
-                blocks.append(
-                    Verbatim(
-                        f"{case['label']}: the law as its author states it", "\n".join(case["equations"])
-                    )
-                )
+    if record.sections.get("cases"):
+        blocks.extend(equation_blocks(record.sections["cases"]))
         blocks.extend(Text(note, "note") for note in shared(_notes(record)))
     return Chapter("problem", "The problem", tuple(blocks)) if blocks else None
 

@@ -11,7 +11,7 @@ from .blocks import Equation
 PREAMBLE = "#let vb(x) = math.upright(math.bold(x))\n"
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=64)
 def equation_svgs(equations: tuple[Equation, ...]) -> tuple[str, ...]:
     """One SVG per equation, all from one run of the compiler."""
     import typst

@@ -216,6 +216,6 @@ def _open(key: str) -> Claim:
         statement=entry.says,
         verdict=Verdict.UNDECIDED,
         reason="samples are no proof",
-        next_step="give the law a storage function that is polynomial in the state (Law.storage)",
+        next_step="write the law with + - * / alone: its V' is then a polynomial, and can be proved",
         source=entry.source,
     )

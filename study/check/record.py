@@ -14,6 +14,7 @@ from ...reports import parts
 from ...reports.provenance import provenance
 from ...reports.record import Record
 from ...scenario import LawChoice, Scenario
+from ...scenario.laws import law_class
 from ...verify.sampling import SampledDerivative
 from ..claims.entries import claim_entries, quantity_entry, witness_entry
 from ..simulated_run import output_times, run_entry
@@ -23,10 +24,6 @@ from .storage_history import storage_history
 
 SHOWN_WINDOWS = 2000
 """Windows that a record lists; of a longer table the first ones, with a note."""
-UNITS = {"lambda": "1/s", "gamma": "1/(kg m^2 s)", "R0": "s", "k0": "1/s", "a": "kg m^2/s^2"} | {
-    "proportional": "N m",
-    "derivative": "N m s",
-}
 
 
 def check_record(study: CheckStudy, *, date: str = "", author: str = "", command: str = "") -> Record:
@@ -207,6 +204,7 @@ def case_entry(scenario: Scenario, case: Case, key: str) -> tuple[dict[str, Any]
         "label": case.choice.label,
         "law": case.choice.type,
         "parameters": parameter_entries(case.choice),
+        "equations": equation_entries(case.choice),
         "claims": claim_entries(case.claims, recheck=f"intermit check {scenario.path.name}"),
         "runs": runs,
         "certificates": certificates,
@@ -215,8 +213,15 @@ def case_entry(scenario: Scenario, case: Case, key: str) -> tuple[dict[str, Any]
 
 
 def parameter_entries(choice: LawChoice) -> list[dict[str, Any]]:
-    """Parameters of a law as exact quantities."""
-    return [_exact(name, value, UNITS.get(name, "")) for name, value in choice.parameters]
+    """Parameters of a law as exact quantities, with the units that the law states."""
+    known = choice.described()
+    units = {name: known[name].unit for name, _ in choice.parameters if name in known}
+    return [_exact(name, value, units.get(name, "")) for name, value in choice.parameters]
+
+
+def equation_entries(choice: LawChoice) -> list[dict[str, str]]:
+    """Equations that the law states of itself, for the report to set."""
+    return [{"title": e.title, "typst": e.typst, "latex": e.latex} for e in law_class(choice).equations]
 
 
 def samples_entry(

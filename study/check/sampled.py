@@ -12,6 +12,7 @@ from ...models.laws import Law
 from ...models.schedule import Schedule
 from ...scenario import Scenario
 from ...verify.filter.converged import ConvergedFilter
+from ...verify.filter.recognise import follows_filter
 from ...verify.sampling import (
     SampledDerivative,
     SampledDomain,
@@ -66,9 +67,8 @@ def reference_floor(scenario: Scenario, law: Law, claim: Claim | None, seen: Run
         for quantity in claim.quantities:
             if quantity.name == CERTIFIED_FLOOR and quantity.low > 0:
                 return Fraction(quantity.low)
-    decay = law.parameters.get("lambda")
-    if decay is not None and scenario.schedule.is_periodic:
-        low = ConvergedFilter(scenario.schedule, decay).floor().low
+    if follows_filter(close_loop(law)) and scenario.schedule.is_periodic:
+        low = ConvergedFilter(scenario.schedule, law.parameters["lambda"]).floor().low
         return Fraction(low) if low > 0 else None
     return Fraction(seen.floor) if seen.floor is not None and seen.floor > 0 else None
 
@@ -76,20 +76,19 @@ def reference_floor(scenario: Scenario, law: Law, claim: Claim | None, seen: Run
 def sampled_domain(scenario: Scenario, law: Law, floor: Fraction | None) -> SampledDomain:
     """All attitudes; Omega, k and g as the scenario states; R from R_min to its upper bound.
 
-    R <= max(R(0), 2 max g^2/lambda) along every run. Controller states of another law are drawn
-    from [-10, 10] times their `[check] gain`.
+    R <= max(R(0), 2 max g^2/lambda) along every run of a law whose R is the persistence filter. Any other
+    controller state is drawn up to `[check] gain`, from the least value that its law states, or from -gain.
     """
     gain, gain_rate = gain_extremes(scenario.schedule)
     boxes: list[tuple[Fraction, Fraction]] = []
     names = tuple(state.name for state in law.controller_states)
+    filtered = follows_filter(close_loop(law))
     for state in law.controller_states:
-        if state.name == "R" and floor is not None and "lambda" in law.parameters:
+        if state.name == "R" and floor is not None and filtered:
             upper = max(state.initial, 2 * gain**2 / law.parameters["lambda"])
             boxes.append((floor, max(upper, floor)))
-        elif state.name == "k":
-            boxes.append((Fraction(0), scenario.check.gain))
         else:
-            boxes.append((-scenario.check.gain, scenario.check.gain))
+            boxes.append((-scenario.check.gain if state.least is None else state.least, scenario.check.gain))
     return SampledDomain(
         rate=scenario.check.rate, controller=tuple(boxes), names=names, gain=gain, gain_rate=gain_rate
     )

@@ -71,12 +71,11 @@ def run_paper(scenarios: tuple[Scenario, ...], *, with_survey: bool = True) -> P
 
 
 def _on_body(scenario: Scenario) -> BodyRuns:
-    choice = next((c for c in scenario.laws if c.type == "adaptive-scaling"), None)
-    if choice is None:
-        raise ValueError(f"{scenario.path.name} has no adaptive-scaling law")
-    law, task = choice.build(), task_of(scenario)
-    if not isinstance(law, AdaptiveScaling):
-        raise TypeError(f"{scenario.path.name}: {choice.label} is not adaptive scaling")
+    laws = (choice.build() for choice in scenario.laws)
+    law = next((law for law in laws if isinstance(law, AdaptiveScaling)), None)
+    if law is None:
+        raise ValueError(f"{scenario.path.name} has no {AdaptiveScaling.name} law")
+    task = task_of(scenario)
     slow, fast = (run_law(f"adaptive, gamma {float(g):g}", replace(law, gamma=g), task) for g in GAMMAS)
     reference = run_law("persistence filter", PersistenceFilter(law.lambda_, law.R0), task)
     return BodyRuns(scenario.spacecraft_name or scenario.name, slow, fast, reference)

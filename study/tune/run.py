@@ -19,6 +19,7 @@ from ...optim.tuning.tune import Tuned, tune
 from ...reports import parts
 from ...reports.record import Record
 from ...scenario import LawChoice, Scenario, ScenarioError
+from ...verify.filter.recognise import has_comparison
 from ..collections import Arrays, certified_below, collection_record, newtons, task_of
 
 
@@ -96,13 +97,12 @@ def run_front(
     )  # fmt: skip
 
 
-CERTIFIABLE = ("adaptive-scaling", "persistence-filter")
-"""Laws with a comparison system: the others are tuned without certified conditions, and said so."""
-
-
 def conditions_on(scenario: Scenario, choice: LawChoice) -> CertifiedConvergence | None:
-    """R_min > 0 and convergence proved over the scenario's initial set; None where no proof can apply."""
-    if choice.type not in CERTIFIABLE:
+    """R_min > 0 and convergence proved over the scenario's initial set; None where no proof can apply.
+
+    A law without a comparison system is tuned without certified conditions, and the record says so.
+    """
+    if not has_comparison(choice.build()):
         return None
     bounds = scenario.initial_set
     return CertifiedConvergence(
@@ -182,7 +182,7 @@ def _uncertified(scenario: Scenario, labels: Sequence[str]) -> list[str]:
     return [
         f"{label}: no certified condition exists for this law; it is simulated, nothing is proved of it."
         for label in labels
-        if scenario.law(label).type not in CERTIFIABLE
+        if not has_comparison(scenario.law(label).build())
     ]
 
 

@@ -9,7 +9,13 @@ import lyapunov_cases as cases
 import numpy as np
 import pytest
 from intermit.models.closed_loop import close_loop
-from intermit.models.laws import AdaptiveScalingAsPrinted, PersistenceFilterAsPrinted, QuaternionPD
+from intermit.models.laws import (
+    AdaptiveScalingAsPrinted,
+    Control,
+    Law,
+    PersistenceFilterAsPrinted,
+    QuaternionPD,
+)
 from intermit.verify import checker
 from intermit.verify.certificates import certificate_text
 from intermit.verify.exact.direction import rational_direction, rational_quaternion
@@ -145,7 +151,21 @@ def test_identity_is_refuted_for_the_laws_as_printed(law):
 def test_law_without_storage_is_undecided():
     (claim,) = lyapunov_claims(QuaternionPD(F(1), F(1)), cases.J1)
     assert claim.verdict is Verdict.UNDECIDED
-    assert "Law.storage" in claim.reason
+    assert "offers no storage function" in claim.reason
+    assert "[check] claims" in claim.next_step  # a built-in law cannot be given one
+
+
+def test_a_users_law_without_storage_is_told_where_to_return_one():
+    @dataclasses.dataclass(frozen=True)
+    class Mine(Law):
+        name = "mine"
+
+        def control(self, plant, time, states, parameters):
+            return Control(-plant.bv)
+
+    (claim,) = lyapunov_claims(Mine(), cases.J1)
+    assert "Mine.storage" in claim.next_step
+    assert "lambda" not in claim.reason + claim.next_step
 
 
 def test_a_users_law_goes_through_the_same_pipeline():

@@ -7,7 +7,6 @@ from pathlib import Path
 import intermit
 import pytest
 from intermit.scenario import load_scenario
-from intermit.scenario.laws import DEFAULTS
 
 EXAMPLES = Path(intermit.__file__).parent / "examples"
 FILES = sorted(EXAMPLES.glob("*.toml"))
@@ -50,13 +49,22 @@ def test_schedule_table_as_described_is_the_period():
     assert any(printed.square_integral(zero, t) != period.square_integral(zero, t) for t in times)
 
 
-def test_builtin_types_are_the_laws_that_exist():
+def test_laws_describe_the_parameters_they_take():
     from intermit.models.laws import LAWS
 
-    assert set(LAWS) == set(DEFAULTS)
-    for name, parameters in DEFAULTS.items():
-        keywords = {("lambda_" if p == "lambda" else p): Fraction(1) for p in parameters}
-        assert set(LAWS[name](**keywords).parameters) == set(parameters)
+    for law in LAWS.values():
+        keywords = {("lambda_" if p == "lambda" else p): Fraction(1) for p in law.described()}
+        assert set(law(**keywords).parameters) == set(law.described())
+
+
+def test_every_parameter_of_a_law_says_its_unit_and_bound():
+    from intermit.models.laws import LAWS
+
+    for law in LAWS.values():
+        for parameter in law.described().values():
+            assert parameter.unit, (law.name, parameter)
+            assert parameter.bound, (law.name, parameter)
+            assert parameter.says, (law.name, parameter)
 
 
 def test_laws_build_with_exact_parameters():

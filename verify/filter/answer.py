@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import final
 
 from ...models.closed_loop import close_loop
-from ...models.laws import Law
+from ...models.laws import LAWS, Law
 from ...models.schedule import Schedule
 from ..verdict import Claim
 from .certificate import floor_certificate
@@ -77,6 +77,7 @@ def answer(question: FloorQuestion) -> FloorAnswer:
         certificate = floor_certificate(q, floor, convergence=found, torque=torque)
     facts = FloorFacts(
         no_system=_no_system(q.law) if floor is None else "",
+        no_system_step=_no_system_step(q.law) if floor is None else "",
         floor=floor,
         converged=converged,
         along_run=q.run_floor,
@@ -96,6 +97,13 @@ def _no_system(law: Law) -> str:
     except NoComparisonError as error:
         return str(error)
     return ""
+
+
+def _no_system_step(law: Law) -> str:
+    """What the user of a law without comparison system can do."""
+    if LAWS.get(law.name) is type(law):
+        return "judge the law by its runs (intermit compare), and leave this key out of [check] claims"
+    return "write the law as docs/theory-floor.md does: + - * / alone, no limit on the torque in it"
 
 
 def _search_horizon(schedule: Schedule) -> Fraction:

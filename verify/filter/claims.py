@@ -21,9 +21,6 @@ from .torque_bound import TorqueBound
 from .worst_found import WorstFound
 
 PAGE = "docs/theory-floor.md"
-NO_PROOF_STEP = (
-    "write the law with the equations of docs/theory-floor.md: + - * / alone, no limit on the torque in it"
-)
 HOPELESS_EXPONENT = 30
 """Off-time over the filter's time constant beyond which no step is proved: R decays by 1e-13 and more."""
 MUELLER = "comparison theorem of Mueller and Walter; docs/theory-floor.md"
@@ -36,7 +33,8 @@ class FloorFacts:
 
     Attributes
     ----------
-    no_system : why the law has no comparison system, in words; empty if it has one
+    no_system, no_system_step : why the law has no comparison system, and what its user can do; empty if it
+        has one
     floor : certified floor; None if the law has no comparison system
     converged : for periodic schedules
     along_run : least R of the scenario's own run, s, and its horizon, s
@@ -45,6 +43,7 @@ class FloorFacts:
     """
 
     no_system: str
+    no_system_step: str
     floor: FilterLowerBound | None
     converged: ConvergedFloor | None = None
     along_run: tuple[float, float] | None = None
@@ -62,7 +61,7 @@ def floor_claim(facts: FloorFacts) -> Claim:
             title,
             "R(t) >= R_min > 0",
             facts.no_system,
-            NO_PROOF_STEP,
+            facts.no_system_step,
             quantities,
         )
     asked = "for all t >= 0" if floor.schedule.period is not None else "over the table"
@@ -98,7 +97,7 @@ def convergence_claim(facts: FloorFacts, found: Convergence | None, attitude: fl
     title, floor = "attitude and rate converge", facts.floor
     general = "error angle and rate go to zero from every start of the initial set"
     if floor is None:
-        return _undecided("convergence", title, general, facts.no_system, NO_PROOF_STEP)
+        return _undecided("convergence", title, general, facts.no_system, facts.no_system_step)
     if found is None:
         return _undecided("convergence", title, general, *_shortfall(floor))
     quantities = _reach_quantities(floor, found)
@@ -151,7 +150,7 @@ def torque_claim(
     floor = facts.floor
     statement = f"|g u| <= {float(limit):g} N m ({norm})"
     if floor is None:
-        return _undecided("torque.limit", title, statement, facts.no_system, NO_PROOF_STEP)
+        return _undecided("torque.limit", title, statement, facts.no_system, facts.no_system_step)
     where = f"from every start with {floor.initial.description}"
     if bound is None or not reaches_far_enough(floor):
         reason, step = _shortfall(floor)

@@ -82,6 +82,15 @@ def compared_law(law: Law) -> ComparedLaw:
     return ComparedLaw(adaptive, found.lam, found.gamma, found.a, start["R"], start.get("k", Fraction(0)))
 
 
+def has_comparison(law: Law) -> bool:
+    """Whether a comparison theorem covers the law, by its equations."""
+    try:
+        compared_law(law)
+    except NoComparisonError:
+        return False
+    return True
+
+
 def follows_filter(loop: ClosedLoop) -> bool:
     """Whether the law's state R obeys R' = -lambda R + g^2 (1 + b0), as polynomials, and never jumps."""
     R, decay = loop.controller_states.get("R"), loop.parameter_symbols.get("lambda")

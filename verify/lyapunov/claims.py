@@ -12,7 +12,7 @@ from ...models.schedule import Schedule
 from ..certificates.format import Certificate
 from ..exact.matrix import Rows
 from ..verdict import Claim, Verdict
-from .candidates import NoStorageError, candidate
+from .candidates import NoStorageError, candidate, storage_step
 from .conditions import paper_condition, sharp_condition
 from .decay import derivative_claim, rate_claim
 from .identity import identity_claim
@@ -45,7 +45,7 @@ def lyapunov_claims(
     try:
         chosen = candidate(close_loop(law))
     except NoStorageError as error:
-        return (_no_storage(str(error)),)
+        return (_no_storage(str(error), storage_step(law)),)
     claims: list[Claim] = []
     identity = identity_claim(chosen, body.exact_inertia)
     claims += [identity] if identity is not None else []
@@ -72,13 +72,13 @@ def certificates_of(claims: Iterable[Claim]) -> tuple[Certificate, ...]:
     return tuple(found)
 
 
-def _no_storage(reason: str) -> Claim:
+def _no_storage(reason: str, next_step: str) -> Claim:
     return Claim(
         key="lyapunov.derivative",
         title="V' <= 0",
         statement="V' <= 0 at every attitude and rate",
         verdict=Verdict.UNDECIDED,
         reason=reason,
-        next_step="return a storage function from Law.storage",
+        next_step=next_step,
         counted=False,
     )

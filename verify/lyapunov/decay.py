@@ -21,7 +21,6 @@ from .identity import identity_certificate
 from .refutation import Refutation, counterexample, refute_sign
 
 SOURCE = "docs/theory-lyapunov.md; Ram & Akella, AAS 21-402"
-NEXT_STEP = "raise lambda, or give the law a storage function of its own (Law.storage)"
 
 
 def derivative_claim(
@@ -56,10 +55,11 @@ def derivative_claim(
     search = falsify(candidate, body, schedule=schedule, weight=weight)
     if search.refutation is not None and candidate.loop.time_symbols.signals:
         reason = f"V' > 0 at values of {', '.join(candidate.loop.time_symbols.signals)} that may never occur"
-        return _claim(key, statement, Verdict.UNDECIDED, reason=reason)
+        return _claim(key, statement, Verdict.UNDECIDED, reason=reason, next_step=_next_step(candidate))
     if search.refutation is not None:
         return _refuted(key, statement, candidate, search.refutation, body, tolerance, weight)
-    return _claim(key, statement, Verdict.UNDECIDED, reason=f"{reason}; {search.summary}")
+    reason = f"{reason}; {search.summary}"
+    return _claim(key, statement, Verdict.UNDECIDED, reason=reason, next_step=_next_step(candidate))
 
 
 def rate_claim(
@@ -85,10 +85,13 @@ def rate_claim(
         refutation = _refute(candidate, body, tolerance, chosen)
         if refutation is not None:
             return _refuted("lambda.rate", statement, candidate, refutation, body, tolerance, chosen)
-        return _claim("lambda.rate", statement, Verdict.UNDECIDED, reason=str(error))
+        step = _next_step(candidate)
+        return _claim("lambda.rate", statement, Verdict.UNDECIDED, reason=str(error), next_step=step)
     if proof.rate == 0:
         reason = "only V' <= 0 was certified: the best rate is zero or too small to round"
-        return _claim("lambda.rate", statement, Verdict.UNDECIDED, reason=reason)
+        return _claim(
+            "lambda.rate", statement, Verdict.UNDECIDED, reason=reason, next_step=_next_step(candidate)
+        )
     sized = f"V{named}: V' <= -rho W with rho = {float(proof.rate):.9g} 1/s{_where(candidate)}"
     extra = () if weight is None else (rational_quantity("weight", weight, unit="kg m^2/s^2"),)
     return _proved("lambda.rate", sized, proof, extra)
@@ -170,6 +173,15 @@ def _by_sharp_condition(
     return (theorem, *condition.evidence)
 
 
+def _next_step(candidate: Candidate) -> str:
+    """What may decide it: a larger lambda for the family's V; of a law's own V only its author knows."""
+    if candidate.right_side is not None:
+        return "raise lambda"
+    return (
+        f"change the storage function that {type(candidate.loop.law).__name__}.storage returns, or the gains"
+    )
+
+
 def _where(candidate: Candidate) -> str:
     if candidate.floor is not None:
         return ", wherever R >= R_min, for every R_min > 0 with k* = 1/R_min"
@@ -200,6 +212,7 @@ def _claim(
     witness: Witness | None = None,
     quantities: tuple[Quantity, ...] = (),
     reason: str = "",
+    next_step: str = "",
 ) -> Claim:
     titles = {
         "lyapunov.derivative": "V' <= 0",
@@ -214,7 +227,7 @@ def _claim(
         quantities=quantities,
         witness=witness,
         reason=reason,
-        next_step=NEXT_STEP if verdict is Verdict.UNDECIDED else "",
+        next_step=next_step,
         source=SOURCE,
         counted=False,
     )
