@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from ..study.check.case import Case
-    from ..study.check.run import CheckStudy
+    from ..study.check.result import CheckStudy
 
 FUNCTION_NOT_LAW = (
     "V' <= 0 and the conditions on lambda are about one storage function, not about the laws: "

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from ..reports.numbers import write
+from ..reports.content.cells import cell_text
 from .claim_tables import plain_table
 
 if TYPE_CHECKING:
@@ -38,17 +38,5 @@ def _table(table: Mapping[str, Any]) -> Any:
     drawn = plain_table(*(column["label"] for column in columns))
     drawn.title, drawn.title_justify, drawn.title_style = table["title"], "left", "italic"
     for row in table["rows"]:
-        drawn.add_row(*(_cell(row.get(column["key"])) for column in columns))
+        drawn.add_row(*(cell_text(row.get(column["key"])) for column in columns))
     return drawn
-
-
-def _cell(cell: Any) -> str:
-    if cell is None:
-        return "-"
-    if isinstance(cell, str):
-        return cell
-    if "verdict" in cell:
-        return f"{cell['verdict']} {cell.get('text', '')}".strip()
-    if "code" in cell:
-        return str(cell["code"])
-    return write(cell).ascii

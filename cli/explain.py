@@ -11,7 +11,7 @@ from ..errors import InputError
 from .options import Debug
 
 if TYPE_CHECKING:
-    from ..study.check.run import CheckStudy
+    from ..study.check.result import CheckStudy
 
 
 def run(

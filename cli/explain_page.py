@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
-    from ..study.check.run import CheckStudy
+    from ..study.check.result import CheckStudy
 
 
 def print_keys(console: Console) -> None:

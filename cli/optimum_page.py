@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from ..optim.peak import Standing
 from ..reports.numbers import write
-from ..reports.parts import quantity
 from ..study.optimum.record import (
     impulse_words,
     least_impulse_words,
@@ -16,13 +15,14 @@ from ..study.optimum.record import (
     switch_words,
     terminal_words,
 )
+from ..study.optimum.result import PEAK_HEAD, peak_row
 from ..study.optimum.run import final_time, idle_words
 from .claim_tables import plain_table
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from ..study.optimum.run import Optimum, OptimumStudy
+    from ..study.optimum.result import Optimum, OptimumStudy
 
 STYLES = {Standing.CHECKED: "bold green", Standing.IMPOSSIBLE: "bold red", Standing.UNDECIDED: "bold yellow"}
 MAX_SWITCHES = 12
@@ -31,6 +31,8 @@ MAX_SWITCHES = 12
 
 def print_optimum(console: Console, study: OptimumStudy) -> None:
     """Print every least peak of a study."""
+    from rich.text import Text
+
     scenario = study.scenario
     first = study.optima[0].problem
     console.print(f"{scenario.name} ({scenario.path.name})", style="bold")
@@ -46,50 +48,16 @@ def print_optimum(console: Console, study: OptimumStudy) -> None:
     if idle := idle_words(scenario, first):
         console.print(f"Idle time left out, exactly: {idle}.")
     console.print()
-    table = plain_table("Least peak", "certified >=", "found", "gap", "standing", "local optima")
+    table = plain_table(*PEAK_HEAD)
     for optimum in study.optima:
-        answer, unit = optimum.answer, optimum.problem.norm.unit
-        found = answer.history is not None
-        table.add_row(
-            optimum.problem.norm.name,
-            _bound(optimum),
-            f"{answer.peak:.7g} {unit}" if found else "-",
-            "-" if optimum.gap is None else f"{100 * max(0.0, optimum.gap):.3g} %",
-            _styled(answer.standing),
-            _optima(optimum),
-        )
+        *before, standing, local = peak_row(optimum)
+        table.add_row(*before, Text(standing, style=STYLES[optimum.answer.standing]), local)
     console.print(table)
     for optimum in study.optima:
         _details(console, optimum)
         asked = study.options.least_time or study.options.least_impulse
         if asked and optimum.limit is None:
             console.print("  no limit is given for this norm: nothing to answer within it")
-
-
-def _bound(optimum: Optimum) -> str:
-    """The certified bound, rounded down."""
-    if optimum.bound is None:
-        return "-"
-    unit = optimum.problem.norm.unit
-    lower = quantity("bound", optimum.bound.value, unit=unit, rigorous=True, side="lower")
-    return write(lower).ascii.removeprefix(">= ")
-
-
-def _styled(standing: Standing) -> str:
-    from rich.text import Text
-
-    return Text(standing.value, style=STYLES[standing])  # type: ignore[return-value]
-
-
-def _optima(optimum: Optimum) -> str:
-    """Count of distinct local optima among the starts, and their spread."""
-    search = optimum.answer.search
-    found = search.local_optima
-    if not found:
-        return "-"
-    if len(found) == 1:
-        return f"1 from {len(search.starts)} starts"
-    return f"{len(found)} from {len(search.starts)} starts, worst +{100 * search.spread:.3g} %"
 
 
 def _details(console: Console, optimum: Optimum) -> None:

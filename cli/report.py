@@ -89,7 +89,7 @@ def _study(
 ) -> tuple[int, Path]:
     from ..reports.build import exit_code, write_report
     from ..reports.folder import refuse
-    from ..study.check.run import CheckStudy
+    from ..study.check.result import CheckStudy
     from ..study.report.run import run_report
     from .check_page import print_check
     from .console import output, progress

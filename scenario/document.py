@@ -20,11 +20,12 @@ MERGED_TABLES = frozenset({"law_defaults"})
 @final
 @dataclass(frozen=True)
 class Document:
-    """The raw tables of a scenario and the file that each came from."""
+    """The raw tables of a scenario, the file that each came from, and the text of the scenario's own file."""
 
     tables: dict[str, Any]
     origins: dict[str, Path]
     path: Path
+    text: str = ""
 
     def origin(self, key: str) -> Path:
         """Return the file in which a top-level key was written (the scenario itself if nowhere)."""
@@ -40,8 +41,8 @@ def top(key: str) -> str:
     return key.split(".", 1)[0].split("[", 1)[0]
 
 
-def read_document(path: Path) -> Document:
-    """Read a scenario file and the files it extends.
+def read_document(path: Path, text: str | None = None) -> Document:
+    """Read a scenario file and the files it extends; with `text`, what a file at `path` would say.
 
     Raises
     ------
@@ -50,13 +51,15 @@ def read_document(path: Path) -> Document:
     """
     chain: list[Path] = []
     raws: list[dict[str, Any]] = []
-    current, named = path, str(path)
+    current, named, first = path, str(path), ""
     while True:
         if current.resolve() in (p.resolve() for p in chain):
             raise ScenarioError(named, "extends a file that extends it in turn")
         if len(chain) == DEEPEST_CHAIN:
             raise ScenarioError(named, f"more than {DEEPEST_CHAIN} files extend each other")
-        raw = _parse(read_text(current, named), named)
+        said = text if text is not None and not chain else read_text(current, named)
+        raw = _parse(said, named)
+        first = said if not chain else first
         chain.append(current)
         raws.append(raw)
         base = raw.pop("extends", None)
@@ -76,7 +79,7 @@ def read_document(path: Path) -> Document:
                 value = {**tables[key], **value}
             tables[key] = value
             origins[key] = file
-    return Document(tables, origins, path)
+    return Document(tables, origins, path, first)
 
 
 def _parse(text: str, where: str) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
@@ -18,6 +19,7 @@ from .fingerprint import fingerprint
 from .initial import InitialSet, InitialState
 from .instants import FileClock, number_text, read_clock
 from .laws import LawChoice
+from .mapping import NAME, toml_text
 from .questions import CheckTable, CompareTable, OptimumTable, ReportTable, StudyTable, TuneTable
 from .schedules import ScheduleChoice
 from .schema import LimitsTable, ScenarioFile, SimulationTable, ToleranceTable
@@ -30,13 +32,14 @@ DEFAULT_WINDOWS = 100
 
 
 @final
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Scenario:
     """Everything a study needs to know, checked.
 
     Attributes
     ----------
-    path : the file it was read from
+    path : the file it was read from; `<dict>` in the folder of the call for a mapping
+    text : what that file says, TOML
     name, description : the user's words, any text
     spacecraft_name : the user's word for the body
     body : rigid body with its exact inertia
@@ -53,6 +56,7 @@ class Scenario:
     """
 
     path: Path
+    text: str
     name: str
     description: str
     spacecraft_name: str
@@ -75,6 +79,10 @@ class Scenario:
     warnings: tuple[str, ...]
     sha256: str
     clock: FileClock
+
+    def __repr__(self) -> str:
+        laws = ", ".join(choice.label for choice in self.laws) or "no law"
+        return f"<Scenario {self.name} ({self.path.name}): {laws}; [0, {float(self.horizon):g}] s>"
 
     @property
     def schedule(self) -> Schedule:
@@ -108,15 +116,21 @@ class Scenario:
         raise ScenarioError(self.path.name, f"has no law labelled {quote(label)} (it has {known})")
 
 
-def load_scenario(path: str | Path) -> Scenario:
-    """Read, check and build a scenario.
+def load_scenario(source: str | Path | Mapping[str, Any]) -> Scenario:
+    """Read, check and build a scenario: a TOML file, or a mapping with the same tables and keys.
+
+    Files that a mapping names lie relative to the current folder.
 
     Raises
     ------
     ScenarioError
         One line that names the file and the key or CSV line, for anything wrong with the input.
     """
-    document, clock, warnings = read_clock(read_document(Path(path)))
+    if isinstance(source, Mapping):
+        document = read_document(Path.cwd() / NAME, toml_text(source))
+    else:
+        document = read_document(Path(source))
+    document, clock, warnings = read_clock(document)
     return build_scenario(validate(document), document, clock, warnings)
 
 
@@ -142,6 +156,7 @@ def build_scenario(
         )
     scenario = Scenario(
         path=document.path,
+        text=document.text,
         name=file.name or document.path.stem,
         description=file.description,
         spacecraft_name=file.spacecraft.name,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, final
 
@@ -11,6 +12,7 @@ from numpy.typing import ArrayLike
 from ..models.types import Array
 from ..optim.comparison.measure import Task
 from ..reports import parts
+from ..reports.content.cells import cell_text
 from ..reports.provenance import provenance
 from ..reports.record import Record
 from ..scenario import Scenario
@@ -44,6 +46,13 @@ def task_of(scenario: Scenario) -> Task:
     )
 
 
+def printed(table: Mapping[str, Any]) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    """A record's table in plain words: its head, and its rows."""
+    keys = [column["key"] for column in table["columns"]]
+    head = tuple(str(column["label"]) for column in table["columns"])
+    return head, [tuple(cell_text(row.get(key)) for key in keys) for row in table["rows"]]
+
+
 def newtons(name: str, value: float | None, digits: int = 5) -> dict[str, Any]:
     """A torque, N m."""
     return parts.figure_of(name, value, digits=digits, unit="N m")
@@ -67,7 +76,7 @@ def collection_record(
     """Record of a study made of tables and figures."""
     found = provenance(
         scenario_name=scenario.name,
-        scenario_text=scenario.path.read_text(encoding="utf-8-sig"),
+        scenario_text=scenario.text,
         command=command,
         seeds=seeds or {},
         options=options or {},

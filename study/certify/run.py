@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import final
 
+from ...errors import InputError
 from ...models.laws import Law
 from ...models.types import Progress
+from ...reports.summary import Shown, Summary
+from ...reports.whole_files import write_whole
 from ...scenario import Scenario
 from ...verify.certificates import Certificate, certificate_text
 from ...verify.certificates.excitation import excitation_certificate
@@ -16,12 +20,12 @@ from ...verify.schedule.zero_runs import default_length
 from ...verify.verdict import Claim, Evidence, EvidenceKind, Verdict
 from ..check.case import decided_claims
 from ..check.run import scenario_claims
-from ..optimum.lower_bounds import asks_for_optimum, own_bound_claim
+from ..optimum.lower_bounds import asks_for_optimum, own_bound
 
 
 @final
-@dataclass(frozen=True)
-class Certification:
+@dataclass(frozen=True, repr=False)
+class Certification(Shown):
     """What a scenario's claims have to show.
 
     Attributes
@@ -32,6 +36,34 @@ class Certification:
 
     claims: tuple[tuple[str, Claim], ...]
     certificates: tuple[Certificate, ...]
+
+    @property
+    def summary(self) -> Summary:
+        """Each claim and whether it has a certificate, as `intermit certify` prints them."""
+        rows = [
+            (
+                "certified" if certificates_of([claim]) else "no certificate",
+                claim.verdict.value,
+                subject,
+                claim.title,
+            )
+            for subject, claim in self.claims
+        ]
+        line = f"{len(self.certificates)} certificates for {len(self.claims)} claims"
+        return Summary("Certificates", (line,), ((("certificate", "verdict", "about", "claim"), rows),))
+
+    def write(self, path: str | Path) -> Path:
+        """Write the certificate file whole or not at all; return its path.
+
+        Raises
+        ------
+        InputError
+            If nothing could be certified.
+        """
+        if not self.certificates:
+            raise InputError("nothing could be certified: there is no file to write")
+        write_whole(Path(path), self.text)
+        return Path(path)
 
     @property
     def text(self) -> str:
@@ -53,7 +85,7 @@ def certify(scenario: Scenario, progress: Progress, *, bound: bool = False) -> C
         ]
     if bound and asks_for_optimum(scenario):
         progress("lower bound", 1.0)
-        claims.append(("optimum", own_bound_claim(scenario)))
+        claims.append(("optimum", own_bound(scenario).claim))
     return Certification(tuple(claims), certificates_of(claim for _, claim in claims))
 
 

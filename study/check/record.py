@@ -19,7 +19,7 @@ from ...verify.sampling import SampledDerivative
 from ..claims.entries import claim_entries, quantity_entry, witness_entry
 from ..simulated_run import output_times, run_entry
 from .case import Case
-from .run import CheckStudy
+from .result import CheckStudy
 from .storage_history import storage_history
 
 SHOWN_WINDOWS = 2000
@@ -58,7 +58,7 @@ def check_provenance(
     ]
     found = provenance(
         scenario_name=scenario.name,
-        scenario_text=scenario.path.read_text(encoding="utf-8-sig"),
+        scenario_text=scenario.text,
         date=date,
         author=author,
         command=command or f"intermit check {scenario.path.name}",

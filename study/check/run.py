@@ -2,51 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import final
-
 from ...models.types import Progress, silent
 from ...scenario import Scenario
 from ...verify.linear.stability import stability_claim
 from ...verify.schedule.excitation import excitation_claim
 from ...verify.schedule.facts import schedule_claims
 from ...verify.verdict import Claim
-from ..claims.counting import count, counted_keys, exit_code, sentence
+from ..claims.counting import count, counted_keys
 from ..options import CheckOptions
 from ..simulated_run import run_law, seen_in
 from .case import Case, CaseOptions
+from .result import CheckStudy
 from .workers import crew
-
-
-@final
-@dataclass(frozen=True)
-class CheckStudy:
-    """Everything a check found.
-
-    Attributes
-    ----------
-    claims : about the schedule, whatever the law
-    cases : one for each law, in the scenario's order
-    """
-
-    scenario: Scenario
-    claims: tuple[Claim, ...]
-    cases: tuple[Case, ...]
-
-    @property
-    def all_claims(self) -> tuple[Claim, ...]:
-        """Claims about the schedule, then those about each law."""
-        return self.claims + tuple(claim for case in self.cases for claim in case.claims)
-
-    @property
-    def exit_code(self) -> int:
-        """0, 1 or 3 by the counted claims."""
-        return exit_code(self.all_claims)
-
-    @property
-    def sentence(self) -> str:
-        """The outcome in one sentence."""
-        return sentence(self.all_claims)
 
 
 def run_check(

@@ -4,19 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, final
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any, final
 
 import numpy as np
 
+from ...errors import InputError
 from ...models.simulation import SimulationError
-from ...optim.comparison.equal_terms import EqualTerms, on_equal_terms
+from ...models.types import Array
+from ...optim.comparison.equal_terms import EqualTerms, NormName, on_equal_terms
 from ...optim.comparison.measure import Goal, LawRun, run_law
 from ...optim.problem import WindowProfile
 from ...reports import parts
+from ...reports.content.blocks import Axis, Chart, Line
 from ...reports.record import Record
+from ...reports.summary import Shown, Summary
 from ...scenario import Scenario
-from ..collections import Arrays, certified_below, collection_record, newtons, task_of
+from ..collections import Arrays, certified_below, collection_record, newtons, printed, task_of
 from ..options import CompareOptions
+from ..plots import TIME, draw, level, needed, windows_of
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 POINTS = 2001
 """Points of a torque history in the record."""
@@ -45,9 +54,14 @@ class Row:
 
 
 @final
-@dataclass(frozen=True, eq=False)
-class Comparison:
-    """All laws of a scenario."""
+@dataclass(frozen=True, eq=False, repr=False)
+class Comparison(Shown):
+    """All laws of a scenario.
+
+    Attributes
+    ----------
+    rows : one a law; `.terms[norm]` has `.law_peak`, `.optimum`, `.bound`, N m, and their ratios
+    """
 
     scenario: Scenario
     rows: tuple[Row, ...]
@@ -57,6 +71,79 @@ class Comparison:
         """Whether every law was compared, each optimum checked, or had nothing to compare."""
         terms = [t for row in self.rows for t in row.terms.values()]
         return all(row.is_answered for row in self.rows) and all(t.optimum is not None for t in terms)
+
+    @property
+    def summary(self) -> Summary:
+        """What each law did, and each beside optimum and bound, as `intermit compare` prints them."""
+        tables = [_laws_table(self), *(_norm_table(self, norm) for norm in self.scenario.compare.norms)]
+        why = [
+            f"{row.label}: {row.failure}" + (f"; next: {row.next_step}" if row.next_step else "")
+            for row in self.rows
+            if row.failure
+        ]
+        title = f"Laws of {self.scenario.name} on equal terms"
+        return Summary(title, why, [printed(table) for table in tables])
+
+    def plot(self, norm: NormName | None = None) -> NDArray[np.object_]:
+        """Draw the size of each law's torque, N m, until it settles, over the certified bound.
+
+        Parameters
+        ----------
+        norm : of the torque; the scenario's first without one
+
+        Returns
+        -------
+        numpy array of matplotlib axes, (number of laws that ran,)
+
+        Raises
+        ------
+        InputError
+            If no law ran to the horizon, or the scenario does not compare in that norm.
+        """
+        chosen = norm or self.scenario.compare.norms[0]
+        if chosen not in self.scenario.compare.norms:
+            raise InputError(f"norm: the scenario compares in {', '.join(self.scenario.compare.norms)}")
+        charts = [_chart(row, chosen) for row in self.rows if row.run is not None]
+        if not charts:
+            raise InputError("nothing to draw: no law ran to the horizon")
+        return draw(charts)
+
+    def to_dataframe(self) -> Any:
+        """One row a law and norm as a pandas DataFrame: settling, s; peak, optimum and bound, N m.
+
+        Raises
+        ------
+        ImportError
+            If pandas is not installed.
+        """
+        rows = [
+            {
+                "law": row.label, "norm": norm, "settling [s]": row.run.figures.settling,
+                "peak [N m]": terms.law_peak, "optimum [N m]": terms.optimum, "bound [N m]": terms.bound,
+            }
+            for row in self.rows
+            if row.run is not None
+            for norm, terms in row.terms.items()
+        ]  # fmt: skip
+        return needed("pandas", "to_dataframe()").DataFrame(rows)
+
+
+def torque_size(row: Row, norm: str) -> tuple[Array, Array]:
+    """Instants (n,), s, until the law settles (or its run ends), and the size of its torque (n,), N m."""
+    assert row.run is not None
+    end = row.run.figures.settling if row.run.figures.settling is not None else row.run.trajectory.end
+    t = np.linspace(0, end, POINTS)
+    torque = row.run.trajectory.signals(t).applied_torque
+    return t, np.abs(torque).max(axis=0) if norm == "component" else np.linalg.norm(torque, axis=0)
+
+
+def _chart(row: Row, norm: str) -> Chart:
+    t, size = torque_size(row, norm)
+    lines = [Line(row.label, t, size)]
+    if norm in row.terms:
+        lines.append(level("certified bound", t, row.terms[norm].bound, 1))
+    shaded = () if row.run is None else windows_of(row.run.task.schedule, Fraction(float(t[-1])))
+    return Chart(norm, row.label, TIME, Axis(f"|g u|, {norm}", "N m"), tuple(lines), "", shaded)
 
 
 def run_comparison(scenario: Scenario, options: CompareOptions | None = None) -> Comparison:
@@ -214,10 +301,7 @@ def _torque_figure(comparison: Comparison, norm: str, arrays: Arrays) -> dict[st
     for number, row in enumerate(comparison.rows, start=1):
         if row.run is None:
             continue
-        end = row.run.figures.settling if row.run.figures.settling is not None else row.run.trajectory.end
-        t = np.linspace(0, end, POINTS)
-        torque = row.run.trajectory.signals(t).applied_torque
-        size = np.abs(torque).max(axis=0) if norm == "component" else np.linalg.norm(torque, axis=0)
+        t, size = torque_size(row, norm)
         x = arrays.put(f"{norm}.law{number}.time", t)
         lines.append(parts.series(row.label, x, arrays.put(f"{norm}.law{number}.torque", size), role="law"))
     return parts.figure(

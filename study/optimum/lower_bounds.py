@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from decimal import ROUND_FLOOR, Decimal
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, final
 
+from ...reports.content.blocks import Axis, Chart
+from ...reports.summary import Shown, Summary
 from ...scenario import Scenario
 from ...verify.verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict
 from ..options import NormKey, OptimumOptions
+from ..plots import draw
 from .run import norm_keys, norm_of, transfer
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from ...optim.bounds import LowerBound
     from ...optim.problem import TransferProblem
 
@@ -23,12 +30,61 @@ def asks_for_optimum(scenario: Scenario) -> bool:
     return bool(scenario.optimum.model_fields_set)
 
 
-def own_bound_claim(scenario: Scenario) -> Claim:
+@final
+@dataclass(frozen=True, repr=False)
+class CertifiedBound(Shown):
+    """The lower bound of the least peak of any controller, in the scenario's own norm.
+
+    Attributes
+    ----------
+    scenario : what is asked
+    problem : the transfer: start, windows, final time, tolerances, norm
+    bounds : every valid bound, with the argument it comes from
+    claim : the largest bound that the stand-alone checker confirms, with its certificate
+    """
+
+    scenario: Scenario
+    problem: TransferProblem
+    bounds: LowerBound
+    claim: Claim
+
+    @property
+    def value(self) -> float:
+        """The claim's bound in `unit`, rounded down; 0 where none could be certified."""
+        return self.claim.quantities[0].low if self.claim.quantities else 0.0
+
+    @property
+    def unit(self) -> str:
+        """Unit of the bound: N m, or N for thrusters."""
+        return self.problem.norm.unit
+
+    @property
+    def summary(self) -> Summary:
+        """The claim, and every bound with its argument."""
+        rows = [
+            (bound.name, f"{below(bound.value)} {self.unit}") for bound in self.bounds.all if bound.value > 0
+        ]
+        claim = self.claim
+        lines = (f"{claim.verdict.value}: {claim.title}", *(filter(None, (claim.reason, claim.next_step))))
+        return Summary(self.scenario.name, lines, ((("Bound from", "certified >="), rows),))
+
+    def plot(self) -> NDArray[np.object_]:
+        """Draw what each argument gives, in `unit`; matplotlib axes, (1,)."""
+        (axes,) = found = draw(
+            [Chart("bounds", self.claim.title, Axis("bound", self.unit), Axis(""), (), "")]
+        )
+        names = [bound.name for bound in reversed(self.bounds.all)]
+        axes.barh(names, [bound.value for bound in reversed(self.bounds.all)])
+        return found
+
+
+def own_bound(scenario: Scenario) -> CertifiedBound:
     """Bound the least peak in the scenario's own norm, with the certificate."""
     from ...optim.bounds import certified_lower_bound
 
     problem = transfer(scenario, norm_of(scenario, norm_keys(scenario, OptimumOptions())[0]))
-    return bound_claim(problem, certified_lower_bound(problem))
+    bounds = certified_lower_bound(problem)
+    return CertifiedBound(scenario, problem, bounds, bound_claim(problem, bounds))
 
 
 def bound_claim(problem: TransferProblem, bound: LowerBound) -> Claim:

@@ -11,7 +11,8 @@ from ...reports import parts
 from ...reports.provenance import provenance
 from ...reports.record import Record
 from ..check.record import scenario_entry
-from .run import Optimum, OptimumStudy, final_time, idle_words
+from .result import Optimum, OptimumStudy
+from .run import final_time, idle_words
 
 if TYPE_CHECKING:
     from ...optim.peak import LeastImpulseFound, LeastTime, Switching, TorqueHistory
@@ -24,7 +25,7 @@ def optimum_record(study: OptimumStudy, *, date: str = "", author: str = "", com
     effort = [e for entry in entries for e in entry.get("effort", ())]
     found = provenance(
         scenario_name=scenario.name,
-        scenario_text=scenario.path.read_text(encoding="utf-8-sig"),
+        scenario_text=scenario.text,
         date=date,
         author=author,
         command=command or f"intermit optimum {scenario.path.name}",

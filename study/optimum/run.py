@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, final
+from typing import TYPE_CHECKING
 
 from ...models.types import Progress, silent
 from ...optim.norms import Euclidean, LargestComponent, Norm, ThrusterAxes
 from ...optim.problem import Terminal, TransferProblem, WindowProfile
 from ...scenario import Scenario
 from ..options import NormKey, OptimumOptions, SolverKey
+from .result import Optimum, OptimumStudy
 
 if TYPE_CHECKING:
     from ...optim.bounds import LowerBound
-    from ...optim.peak import LeastImpulseFound, LeastTime, PeakAnswer
-    from ...optim.peak.search.explain import Explanation
+    from ...optim.peak import PeakAnswer
     from ...optim.peak.search.options import LocalSolver
 
 INVERSION_ALLOWANCE = 1e-7
@@ -25,99 +24,6 @@ INVERSION_ALLOWANCE = 1e-7
 
 class BoundInversionError(RuntimeError):
     """A feasible history below its certified bound: one of the two is wrong, and the run must stop."""
-
-
-@final
-@dataclass(frozen=True)
-class Optimum:
-    """One transfer solved.
-
-    Attributes
-    ----------
-    key : name of the norm in the record
-    answer : the least peak found and its checks
-    limit : the torque (or force) limit given for this norm, its unit, or None
-    hopeless : why the limit cannot be met by any controller, or None
-    bound : certified lower bound, computed apart from the answer; None where there is none
-    least_time, least_impulse : within the limit; None if not asked for
-    """
-
-    key: NormKey
-    problem: TransferProblem
-    answer: PeakAnswer
-    limit: float | None
-    hopeless: Explanation | None
-    bound: LowerBound | None = None
-    least_time: LeastTime | None = None
-    least_impulse: LeastImpulseFound | None = None
-
-    @property
-    def gap(self) -> float | None:
-        """(peak found - certified bound) / peak found; None without both."""
-        if self.bound is None or self.answer.history is None or self.answer.peak <= 0:
-            return None
-        return 1.0 - self.bound.value / self.answer.peak
-
-    @property
-    def limit_is_refuted(self) -> bool:
-        """Whether the limit lies below the certified bound: then no controller whatever can meet it."""
-        return self.limit is not None and self.bound is not None and self.limit < self.bound.value
-
-    @property
-    def within_limit(self) -> bool | None:
-        """Whether the history found respects the limit; None without a limit or a history."""
-        return None if self.limit is None or self.answer.history is None else self.answer.peak <= self.limit
-
-    @property
-    def _limit_is_ruled_out(self) -> bool:
-        return self.limit_is_refuted or (self.hopeless is not None and self.hopeless.certain)
-
-    @property
-    def outcome(self) -> str:
-        """What became of it, in a few words: the standing, and the limit if there is one."""
-        from ...optim.peak import Standing
-
-        if self.answer.standing is Standing.IMPOSSIBLE:
-            return "impossible"
-        if self._limit_is_ruled_out:
-            return "impossible within its limit"
-        if self.answer.standing is Standing.UNDECIDED:
-            return "left open"
-        return "found and checked" + (" but above its limit" if self.within_limit is False else "")
-
-    @property
-    def exit_code(self) -> int:
-        """0 solved (and within the limit), 1 impossible, 3 left open."""
-        from ...optim.peak import Standing
-
-        if self.answer.standing is Standing.IMPOSSIBLE or self._limit_is_ruled_out:
-            return 1
-        if self.answer.standing is Standing.UNDECIDED or self.within_limit is False:
-            return 3
-        return 0
-
-
-@final
-@dataclass(frozen=True)
-class OptimumStudy:
-    """Every transfer of a scenario, solved."""
-
-    scenario: Scenario
-    options: OptimumOptions
-    optima: tuple[Optimum, ...]
-
-    @property
-    def exit_code(self) -> int:
-        """1 if one is impossible, else 3 if one is left open, else 0."""
-        codes = {optimum.exit_code for optimum in self.optima}
-        return 1 if 1 in codes else 3 if 3 in codes else 0
-
-    @property
-    def sentence(self) -> str:
-        """The outcome in one sentence."""
-        counts = Counter(optimum.outcome for optimum in self.optima)
-        parts = [f"{n} {words}" for words, n in counts.items()]
-        return f"Of {len(self.optima)} least peaks: {'; '.join(parts)}."
 
 
 def run_optimum(

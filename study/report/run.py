@@ -10,7 +10,8 @@ from ...reports.record import Record
 from ...reports.values import thaw
 from ...scenario import Scenario
 from ..check.record import check_record
-from ..check.run import CheckStudy, run_check
+from ..check.result import CheckStudy
+from ..check.run import run_check
 from ..options import OptimumOptions, ReportOptions
 from ..pool import executor_of
 

@@ -11,7 +11,7 @@ import pytest
 from intermit.cli.app import run
 from intermit.optim.bounds import certified_lower_bound
 from intermit.scenario import load_scenario
-from intermit.study.optimum.lower_bounds import below, bound_claim, own_bound_claim
+from intermit.study.optimum.lower_bounds import below, bound_claim, own_bound
 from intermit.study.optimum.run import norm_of, transfer
 from intermit.verify import checker
 from intermit.verify.verdict import Verdict
@@ -115,7 +115,7 @@ def test_optimum_writes_each_norm_and_how_to_recheck_it(tmp_path, capsys):
 
 def test_where_the_momentum_may_do_it_nothing_is_claimed(tmp_path):
     loose = OPTIMUM + "\nrate_tolerance = 10"
-    claim = own_bound_claim(load_scenario(scenario(tmp_path, rate="[3, 3, 3]", optimum=loose)))
+    claim = own_bound(load_scenario(scenario(tmp_path, rate="[3, 3, 3]", optimum=loose))).claim
     assert claim.verdict is Verdict.UNDECIDED
     assert not claim.evidence
 
