@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from unicodedata import normalize
 
 from ..content.blocks import Cell
 from ..content.wording import visible
 from ..numbers import ROOT, number, write
+from .letters import PAIRS, letter
 
 SPECIAL = {
     "\\": r"\textbackslash{}",
@@ -65,7 +67,7 @@ BREAK_EVERY = 12
 def text(value: str) -> str:
     """Text that LaTeX sets as it is written; a character pdflatex cannot set stands as [U+6F22]."""
     out, run = [], 0
-    for c in visible(value):
+    for c in normalize("NFC", visible(value)):
         out.append(_character(c))
         run = 0 if c.isspace() else run + 1
         if run % BREAK_EVERY == 0 and run:
@@ -86,7 +88,9 @@ def _character(c: str) -> str:
         return rf"\ensuremath{{^{{{SUPERSCRIPTS[c]}}}}}"
     if c in SUBSCRIPTS:
         return rf"\ensuremath{{_{{{SUBSCRIPTS[c]}}}}}"
-    return rf"{{[}}U+{ord(c):04X}{{]}}"
+    if c in PAIRS:
+        return "".join(_character(part) for part in PAIRS[c])
+    return letter(c) or rf"{{[}}U+{ord(c):04X}{{]}}"
 
 
 def unit(name: str) -> str:

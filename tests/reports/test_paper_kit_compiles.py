@@ -89,11 +89,41 @@ def test_hostile_names_are_set_and_do_nothing(record: Record, tmp_path: Path) ->
     assert shown.count("x") > len(HOSTILE["long"])  # whole, in the list of names
 
 
+LATIN = "".join(chr(c) for c in (*range(0xA1, 0x180), *range(0x218, 0x21C)) if chr(c) not in "\xadĦħĸŦŧſ")
+"""Latin-1 and Latin Extended-A without the soft hyphen and the letters that T1 has not; commas below."""
+
+
+def test_latin_letters_are_ascii_commands_and_no_code_points() -> None:
+    for c in LATIN:
+        shown = text(c)
+        assert shown.isascii()
+        assert "U+" not in shown, c
+    assert text("Søn Gaál, ½ µm ß") == r"S\o{}n Ga\'{a}l{,} \textonehalf{} \textmu{}m \ss{}"
+    assert text("e\u0301") == text("é")
+    assert "U+6F22" in text("漢")
+
+
+@pytest.mark.latex
+@pytest.mark.slow
+def test_pdflatex_sets_every_latin_letter_as_itself(tmp_path: Path) -> None:
+    need("pdflatex")
+    words = [LATIN[i : i + 8] for i in range(0, len(LATIN), 8)]
+    lines = "\n\n".join(text(word) for word in words)
+    head = "\\documentclass{article}\\usepackage[T1]{fontenc}\\usepackage{textcomp,cmap,lmodern,amsmath}"
+    (tmp_path / "kit.tex").write_text(f"{head}\\begin{{document}}\n{lines}\n\\end{{document}}\n")
+    assert "Missing character" not in compiled(tmp_path)
+    command = [need("pdftotext"), "-raw", "kit.pdf", "-"]
+    plain = subprocess.run(command, cwd=tmp_path, check=True, capture_output=True).stdout.decode()
+    whole = "ÀÁÂÃÄÅÆÇÈÉÊËÌÍÎÏÐÑÒÓÔÕÖØÙÚÛÜÝÞßàáâãäåæçèéêëìíîïðñòóôõöøùúûüýþÿĂ"
+    whole += "ăĄąĆćČčĎďĘęĚěĞğİıĹĺŁłŃńŇňŊŋŐőŒœŔŕŘřŚśŞşŠšŤťŮůŰűŸŹźŻżŽž"
+    assert set(whole) <= set(plain)  # those that T1 fonts hold; the others are an accent over a letter
+
+
 def test_escaped_text_holds_no_command_of_the_users() -> None:
     for hostile in HOSTILE.values():
         escaped = text(hostile.encode("utf-8", "replace").decode())
         bare = re.sub(
-            r"\\(text[a-z]+\{\}|ldots\{\}|allowbreak\{\}|[{}$&#%_]|ensuremath\{[^{}]*(\{[^{}]*\})?\})",
+            r"\\(text[a-z]+\{\}|['`^~=.\"ruHvck]\{[A-Za-z]\}|ldots\{\}|allowbreak\{\}|[{}$&#%_]|ensuremath\{[^{}]*(\{[^{}]*\})?\})",
             "",
             escaped,
         )
