@@ -102,6 +102,36 @@ def build(
     return state, bounds
 
 
+FAST = 1
+"""rad/s, 57 deg/s: a start rate above it deserves a look at its unit."""
+NEARLY_ONE = Fraction(966, 1000)
+"""cos(15 deg): a last entry above it, read as a scalar, would be a turn below 30 deg."""
+
+
+def doubtful_readings(file: ScenarioFile, document: Document) -> tuple[str, ...]:
+    """Warnings that spell out how a start was read, where it looks like another unit or order."""
+    found = []
+    for key, table in (("target", file.target), ("initial", file.initial)):
+        q = None if table is None else table.quaternion
+        if q is None or abs(q[3]) < NEARLY_ONE:
+            continue
+        angle, other = (math.degrees(2 * math.acos(min(1.0, abs(float(x))))) for x in (q[0], q[3]))
+        found.append(
+            f"{document.where(f'{key}.quaternion')}: read scalar first, a turn of {angle:.6g} deg; if the "
+            f"scalar stands last, move it to the front: a turn of {other:.6g} deg"
+        )
+    rates = {"initial.rate": math.hypot(*(float(x) for x in file.initial.rate)) if file.initial else 0.0}
+    if file.initial_set is not None and file.initial_set.max_rate is not None:
+        rates["initial_set.max_rate"] = float(file.initial_set.max_rate)
+    for key, rate in rates.items():
+        if rate > FAST:
+            found.append(
+                f"{document.where(key)}: read as rad/s, and {rate:.6g} rad/s are {math.degrees(rate):.6g} "
+                f"deg/s; if deg/s are meant, {rate:.6g} deg/s are {math.radians(rate):.6g} rad/s"
+            )
+    return tuple(found)
+
+
 def _given(file: ScenarioFile) -> InitialTable | None:
     """Return the table of the state; None where it says no more than when the run starts, beside a set."""
     table = file.initial

@@ -147,7 +147,7 @@ def build_scenario(
     starts_in_window = bool(at_once and at_once[0])
     state, bounds = initial.build(file, document, body, starts_in_window=starts_in_window)
     choices = laws.build(file, document)
-    warnings += told + schedule_choice.warnings
+    warnings += told + schedule_choice.warnings + initial.doubtful_readings(file, document)
     if bounds.max_angle_deg > 180 + initial.ANGLE_ALLOWANCE:
         warnings += (
             f"{document.where('initial' if bounds.from_state else 'initial_set')}: error angle up to "

@@ -19,11 +19,25 @@ Norm = Literal["component", "euclidean"]
 ShapeName = Literal["hermite", "hermite-as-printed", "ramps"]
 
 
+class ProductsTable(Table):
+    """[spacecraft.inertia_products]: the integrals of x y, x z and y z over the mass, kg m^2."""
+
+    xy: Exact
+    xz: Exact
+    yz: Exact
+
+
 class SpacecraftTable(Table):
-    """[spacecraft]: `inertia`, kg m^2, body frame; `inertia_tolerance`: every entry known to +- this."""
+    """[spacecraft]: the inertia, kg m^2, body frame; `inertia_tolerance`: every entry known to +- this.
+
+    `inertia` is the matrix J, J12 = -integral of x y. Or: `inertia_moments` (its diagonal) with
+    `inertia_products`, integrals of the other sign, as many programs print them.
+    """
 
     name: Text = ""
-    inertia: Matrix
+    inertia: Matrix | None = None
+    inertia_moments: Vector | None = None
+    inertia_products: ProductsTable | None = None
     inertia_tolerance: Any = None
 
     @field_validator("inertia_tolerance")

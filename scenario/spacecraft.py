@@ -25,9 +25,10 @@ def build(
         If the inertia is not symmetric or not positive definite, or the tolerance is not a number
         or a symmetric 3 by 3 table of numbers >= 0, or reaches an inertia that is none.
     """
-    key = document.where("spacecraft.inertia")
+    name, matrix = _inertia(table, document)
+    key = document.where(name)
     try:
-        body = RigidBody(table.inertia)
+        body = RigidBody(matrix)
     except ValueError as error:
         raise ScenarioError(key, str(error)) from None
     warnings: tuple[str, ...] = ()
@@ -42,6 +43,33 @@ def build(
         where = document.where("spacecraft.inertia_tolerance")
         raise ScenarioError(where, "reaches an inertia that is not positive definite: make it smaller")
     return body, tolerance, warnings
+
+
+def _inertia(table: SpacecraftTable, document: Document) -> tuple[str, ExactMatrix]:
+    """The matrix J, and the key that gives it."""
+    moments, products = table.inertia_moments, table.inertia_products
+    if table.inertia is not None:
+        if moments is not None or products is not None:
+            other = "inertia_moments" if moments is not None else "inertia_products"
+            raise ScenarioError(
+                document.where(f"spacecraft.{other}"),
+                "the inertia is given twice: give inertia (the matrix J, J12 = -integral of x y), or "
+                "inertia_moments with inertia_products (the integrals themselves)",
+            )
+        return "spacecraft.inertia", table.inertia
+    if moments is None:
+        raise ScenarioError(
+            document.where("spacecraft.inertia"),
+            "required, but missing (or give inertia_moments with inertia_products)",
+        )
+    if products is None:
+        raise ScenarioError(
+            document.where("spacecraft.inertia_products"),
+            "required beside inertia_moments, but missing: { xy = 0, xz = 0, yz = 0 } for principal axes",
+        )
+    xx, yy, zz = moments
+    xy, xz, yz = -products.xy, -products.xz, -products.yz
+    return "spacecraft.inertia_moments", ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
 
 
 def _stays_definite(inertia: ExactMatrix, tolerance: ExactMatrix) -> bool:

@@ -15,7 +15,7 @@ name = "My spacecraft"
 
 [spacecraft]
 name = "bus"
-inertia = [[3.05, 0.14, 0.05],   # kg m^2, body frame, about the centre of mass
+inertia = [[3.05, 0.14, 0.05],   # kg m^2, body frame, about the centre of mass; J12 = -integral of x y
            [0.14, 2.66, 0.12],
            [0.05, 0.12, 2.18]]
 # inertia_tolerance = 0.02       # kg m^2: every entry known to +- this; proofs then cover the interval

@@ -165,6 +165,44 @@ class NotALaw:
 '''
 
 
+PRODUCTS = "inertia_moments = [3.05, 2.66, 2.18]\ninertia_products = {{ xy = {xy}, xz = -0.05, yz = -0.12 }}"
+
+
+def test_products_of_inertia_are_minus_the_entries(workshop):
+    rows = "inertia = [[3.05, 0.14, 0.05], [0.14, 2.66, 0.12], [0.05, 0.12, 2.18]]"
+    matrix = workshop.load(spacecraft=rows).body.exact_inertia
+    assert workshop.load(spacecraft=PRODUCTS.format(xy="-0.14")).body.exact_inertia == matrix
+    assert workshop.load(spacecraft=PRODUCTS.format(xy="0.14")).body.exact_inertia != matrix
+
+
+@pytest.mark.parametrize(
+    ("table", "says"),
+    [
+        (PRODUCTS.format(xy="0") + "\ninertia = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]", "given twice"),
+        ("inertia_moments = [1, 1, 1]", "inertia_products: required"),
+        ("inertia_moments = [1, 1, 1]\ninertia_products = [0, 0, 0]", "inertia_products: expected a table"),
+        ("name = 'none'", "inertia: required"),
+    ],
+)
+def test_an_inertia_is_given_once_and_whole(workshop, table, says):
+    assert says in workshop.complaint(spacecraft=table)
+
+
+@pytest.mark.parametrize(
+    ("start", "says"),
+    [
+        ("quaternion = [0, 0.6, 0, 0.8]", ""),
+        ("quaternion = [0.01, 0, 0, 0.99995]", "a turn of 178.854 deg; if the scalar stands last"),
+        ("axis = [1, 0, 0]\nangle_deg = 9\nrate = [5, 0, 0]", "5 rad/s are 286.479 deg/s"),
+        ("axis = [1, 0, 0]\nangle_deg = 9\nrate = [0.9, 0, 0]", ""),
+    ],
+)
+def test_a_start_in_a_doubtful_unit_or_order_is_spelled_out(workshop, start, says):
+    warnings = [w for w in workshop.load(initial=start).warnings if "initial" in w]
+    assert bool(warnings) == bool(says)
+    assert all(says in w for w in warnings)
+
+
 def test_user_law_is_loaded_with_exact_parameters(workshop):
     (workshop.folder / "mine.py").write_text(USER_LAW)
     text = 'type = "user"\nfile = "mine.py"\nclass = "{}"\nparameters = {{ {} = 0.1 }}'
