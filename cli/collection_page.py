@@ -19,9 +19,9 @@ SECTIONS = ("comparison", "tuning", "front", "schedule_study", "paper_claims", "
 def print_collections(console: Console, record: Record) -> None:
     """Print the tables and notes of every such section."""
     for name in SECTIONS:
-        if name not in record.sections:
+        if name not in record.document["sections"]:
             continue
-        section = record.sections[name]
+        section = record.document["sections"][name]
         console.print(section.get("title", name), style="bold")
         if section.get("summary"):
             console.print(section["summary"])

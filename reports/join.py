@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from .record import Array, Record, RecordError
-from .values import thaw
+from .record.values import thaw
 
 
 def join(
@@ -32,7 +32,7 @@ def join(
     sections: dict[str, Any] = {}
     arrays: dict[str, Array] = {}
     for record in records:
-        _add_sections(sections, thaw(record.sections))
+        _add_sections(sections, thaw(record.document["sections"]))
         for name, value in record.arrays.items():
             if name in arrays and not np.array_equal(arrays[name], value):
                 raise RecordError(f"two records call different arrays {name!r}")

@@ -92,7 +92,7 @@ def _metrics(record: Record) -> dict[Key, Mapping[str, Any]]:
     for run in runs_of(record):
         for q in run.data["metrics"]:
             found.setdefault((run.label, q["name"]), q)
-    for entry in record.sections.get("optimum", ()):
+    for entry in record.document["sections"].get("optimum", ()):
         for key in ("value", "bound", "gap"):
             if entry.get(key):
                 found.setdefault((entry["label"], entry[key].get("label") or key), entry[key])

@@ -29,7 +29,7 @@ COARSE_DIGITS = 4
 
 def optimum_chapter(record: Record) -> Chapter | None:
     """The table bound <= optimum, then torque, rate and switching function of each optimum."""
-    entries = record.sections.get("optimum", ())
+    entries = record.document["sections"].get("optimum", ())
     if not entries:
         return None
     rows = tuple(_row(e) for e in entries)

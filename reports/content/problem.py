@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from ..record import Record
-from ..values import thaw
+from ..record.values import thaw
 from .blocks import Axis, Block, Cell, Chapter, Chart, Charts, Facts, Line, Table, Text, Verbatim
 from .equations import equation_blocks
 from .wording import plural, shared
@@ -18,13 +18,13 @@ MAX_WINDOWS = 300
 
 def shaded(record: Record) -> tuple[tuple[float, float], ...]:
     """Thruster windows as figures shade them: none if there are more than `MAX_WINDOWS`."""
-    windows = record.sections.get("schedule", {}).get("windows", ())
+    windows = record.document["sections"].get("schedule", {}).get("windows", ())
     return tuple((w[0], w[1]) for w in windows) if len(windows) <= MAX_WINDOWS else ()
 
 
 def problem_chapter(record: Record) -> Chapter | None:
     """Echo the scenario and set the equations."""
-    scenario = record.sections.get("scenario")
+    scenario = record.document["sections"].get("scenario")
     blocks: list[Block] = []
     if scenario:
         if scenario.get("description"):
@@ -34,15 +34,15 @@ def problem_chapter(record: Record) -> Chapter | None:
     parameters = _parameters(record)
     if parameters:
         blocks.append(parameters)
-    if record.sections.get("cases"):
-        blocks.extend(equation_blocks(record.sections["cases"]))
+    if record.document["sections"].get("cases"):
+        blocks.extend(equation_blocks(record.document["sections"]["cases"]))
         blocks.extend(Text(note, "note") for note in shared(_notes(record)))
     return Chapter("problem", "The problem", tuple(blocks)) if blocks else None
 
 
 def _parameters(record: Record) -> Table | None:
     """One row a law, one column a parameter."""
-    cases = record.sections.get("cases", ())
+    cases = record.document["sections"].get("cases", ())
     heads = {
         p["name"]: (p["name"], p.get("label") or p["name"], p.get("unit", ""))
         for case in cases
@@ -56,7 +56,7 @@ def _parameters(record: Record) -> Table | None:
 
 
 def _notes(record: Record) -> Iterator[tuple[str, str]]:
-    for case in record.sections.get("cases", ()):
+    for case in record.document["sections"].get("cases", ()):
         yield from ((case["label"], note) for note in case.get("notes", ()))
 
 
@@ -71,7 +71,7 @@ def _fact(fact: Mapping[str, Any]) -> Cell:
 
 def schedule_chapter(record: Record) -> Chapter | None:
     """The gain through its windows, and the schedule's facts."""
-    schedule = record.sections.get("schedule")
+    schedule = record.document["sections"].get("schedule")
     if not schedule:
         return None
     names, windows = schedule["arrays"], schedule["windows"]
@@ -86,8 +86,7 @@ def schedule_chapter(record: Record) -> Chapter | None:
         shaded(record),
     )
     extends = {"periodic": "The table repeats for ever.", "finite": "The table ends; g is zero after it."}
-    rows = [(q.get("label") or q["name"], q) for q in schedule.get("facts", ())]
-    rows += [
+    rows = [
         (f"{claim['title']}: {q.get('label') or q['name']}", q)
         for claim in schedule.get("claims", ())
         for q in claim["quantities"]
@@ -117,7 +116,7 @@ def provenance_chapter(record: Record) -> Chapter:
     ]
     rows += [(f"Option {k}", _option(v)) for k, v in sorted(origin["options"].items())]
     rows += [(f"Effort: {e['label']}", str(e["count"])) for e in origin.get("effort", ())]
-    for case in record.sections.get("cases", ()):
+    for case in record.document["sections"].get("cases", ()):
         for run in case.get("runs", ()):
             rows += [
                 (f"Effort: {case['label']}, {e['label']}", str(e["count"])) for e in run.get("effort", ())

@@ -51,7 +51,7 @@ class Run:
 def runs_of(record: Record) -> tuple[Run, ...]:
     """Every run of every case; the run's label is added where a law has several."""
     found = []
-    for i, case in enumerate(record.sections.get("cases", ())):
+    for i, case in enumerate(record.document["sections"].get("cases", ())):
         runs = case.get("runs", ())
         for j, run in enumerate(runs):
             label = case["label"] if len(runs) == 1 else f"{case['label']}, {run['label']}"
@@ -170,7 +170,7 @@ def filter_chapter(record: Record) -> Chapter | None:
 def _by_case(record: Record, role: str, label: str) -> dict[str, list[Line]]:
     """Certified curves of each law, or the level its certificate or claim states."""
     found: dict[str, list[Line]] = {}
-    for case in record.sections.get("cases", ()):
+    for case in record.document["sections"].get("cases", ()):
         holders = [c["arrays"] for c in case.get("certificates", ()) if role in c.get("arrays", {})]
         lines = [
             Line(label, record.array(a["time"]), record.array(a[role]), colour=1, dashed=True)
@@ -187,7 +187,7 @@ def _by_case(record: Record, role: str, label: str) -> dict[str, list[Line]]:
 def _certified(record: Record, role: str) -> list[Line]:
     """Collect the certified curves of one role, one per law that has it, in the law's colour, dashed."""
     lines = []
-    for i, case in enumerate(record.sections.get("cases", ())):
+    for i, case in enumerate(record.document["sections"].get("cases", ())):
         for certificate in case.get("certificates", ()):
             names = certificate.get("arrays", {})
             if role in names:
@@ -228,7 +228,7 @@ def attitude_chapter(record: Record) -> Chapter | None:
     blocks: list[Block] = []
     bodies = _bodies(record, runs)
     if bodies:
-        inertia = record.sections.get("scenario", {}).get("inertia")
+        inertia = record.document["sections"].get("scenario", {}).get("inertia")
         blocks.append(Replay(bodies, shaded(record), inertia))
     blocks += [Charts(tuple(group)) for group in (attitude, rates) if group]
     return Chapter("attitude", "Attitude and rate", tuple(blocks)) if blocks else None
@@ -260,7 +260,7 @@ def _bodies(record: Record, runs: tuple[Run, ...]) -> tuple[Body, ...]:
         attitude = run.array("quaternion")
         if attitude is not None:
             found.append(Body(run.label, run.time, attitude, run.array("torque")))
-    for optimum in record.sections.get("optimum", ()):
+    for optimum in record.document["sections"].get("optimum", ()):
         names = optimum.get("arrays", {})
         if "quaternion" in names:
             torque = record.array(names["torque"]) if "torque" in names else None

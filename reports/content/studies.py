@@ -50,7 +50,7 @@ def table_from(table: Mapping[str, Any], key: str) -> Table:
 
 def collection_chapter(record: Record, section: str, title: str) -> Chapter | None:
     """Tables, figures and notes of one collection."""
-    held = record.sections.get(section)
+    held = record.document["sections"].get(section)
     if not held:
         return None
     blocks: list[Block] = [Text(held["summary"])] if held.get("summary") else []
@@ -68,7 +68,7 @@ def collection_chapter(record: Record, section: str, title: str) -> Chapter | No
 
 def samples_chapter(record: Record) -> Chapter | None:
     """Sampled margins: evidence, never a proof, and said so."""
-    entries = record.sections.get("samples", ())
+    entries = record.document["sections"].get("samples", ())
     if not entries:
         return None
     blocks: list[Block] = [Text("Samples support a claim; they never prove it.", "note")]
@@ -108,8 +108,6 @@ def _sample_charts(record: Record, entry: Mapping[str, Any], index: int) -> list
                 alt,
             )
         )
-    if "scatter" in entry:
-        charts.append(chart_from(record, entry["scatter"], f"samples-scatter-{index + 1}"))
     return charts
 
 

@@ -23,13 +23,12 @@ HEADLINE_NUMBERS = (
 
 
 def groups(record: Record) -> tuple[Group, ...]:
-    """Claims by subject: the study's own, the schedule's, each law's, the optimum's, the collections'."""
-    found = ((label, tuple(claims)) for label, claims in _groups(record.sections) if claims)
+    """Claims by subject: the schedule's, each law's, the optimum's, the collections'."""
+    found = ((label, tuple(claims)) for label, claims in _groups(record.document["sections"]) if claims)
     return tuple(Group(label, claims, i + 1) for i, (label, claims) in enumerate(found))
 
 
 def _groups(sections: Mapping[str, Any]) -> Iterator[tuple[str, list[Mapping[str, Any]]]]:
-    yield "Study", list(sections.get("claims", ()))
     yield "Schedule", list(sections.get("schedule", {}).get("claims", ()))
     for case in sections.get("cases", ()):
         yield case["label"], list(case.get("claims", ()))
@@ -45,9 +44,7 @@ COLLECTIONS = {
     "tuning": "Tuning",
     "schedule_study": "Schedule study",
     "paper_claims": "The paper's claims",
-    "linear": "Linear plant",
     "audit": "Audit of the printed equations",
-    "appendix": "More",
 }
 
 
@@ -77,7 +74,7 @@ def answer(record: Record) -> str:
     claims = tuple(c for g in groups(record) for c in g.claims)
     parts = [f"{count} {verdict}" for verdict, count in counted(claims)]
     if not parts:
-        summaries = [record.sections.get(key, {}).get("summary", "") for key in COLLECTIONS]
+        summaries = [record.document["sections"].get(key, {}).get("summary", "") for key in COLLECTIONS]
         said = record.document.get("outcome", {}).get("sentence", "")
         return next((s for s in (*summaries, said) if s), "No claim was asked for.")
     total = sum(count for _, count in counted(claims))
@@ -88,7 +85,7 @@ def verdict_chapter(record: Record) -> Chapter:
     """Cards, then the table."""
     found = groups(record)
     blocks: list[Block] = [Text(sentence) for sentence in _not_proved(found)]
-    cards = tuple(_card(case, record) for case in record.sections.get("cases", ()))
+    cards = tuple(_card(case, record) for case in record.document["sections"].get("cases", ()))
     if cards:
         blocks.append(Cards(cards))
     others = tuple(c for g in found for _, c in g.entries(counted=False))
@@ -96,7 +93,7 @@ def verdict_chapter(record: Record) -> Chapter:
         blocks.append(Verdicts(found))
     if others:
         blocks.append(Verdicts(found, counted=False, summary=_others(others)))
-    blocks.extend(Text(note, "warning") for note in _warnings(record.sections))
+    blocks.extend(Text(note, "warning") for note in _warnings(record.document["sections"]))
     return Chapter("verdicts", "Verdicts", tuple(blocks))
 
 
@@ -133,7 +130,7 @@ def _card(case: Mapping[str, Any], record: Record) -> Card:
 
 def _ratios(label: str, record: Record) -> list[dict[str, Any]]:
     """The law's peak over the least any controller needs, in the first norm compared."""
-    for table in record.sections.get("comparison", {}).get("tables", ()):
+    for table in record.document["sections"].get("comparison", {}).get("tables", ()):
         for row in table["rows"]:
             if row.get("law") == label and isinstance(row.get("ratio"), Mapping):
                 return [dict(row["ratio"]) | {"label": "peak over the least possible"}]

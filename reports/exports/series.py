@@ -58,7 +58,7 @@ def export_files(record: Record) -> dict[str, bytes]:
 
 def series_of(record: Record) -> Iterator[Series]:
     """Every group of arrays beside a time, in the record's order."""
-    sections = record.sections
+    sections = record.document["sections"]
     if "schedule" in sections:
         yield _series(record, "schedule", "schedule", sections["schedule"]["arrays"])
     for i, case in enumerate(sections.get("cases", ())):

@@ -19,7 +19,7 @@ from ..content.typeset import equation_svgs
 from ..content.verdicts import claim_numbers, refutation
 from ..content.wording import MAX_LABEL, short, visible
 from ..numbers import number, unit_text, write
-from ..values import thaw
+from ..record.values import thaw
 from .plotly import figure
 from .replay import replay_data
 

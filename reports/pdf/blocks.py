@@ -28,7 +28,7 @@ from ..content.studies import values_text
 from ..content.verdicts import claim_numbers, refutation
 from ..content.wording import shares, short
 from ..numbers import number, unit_text, write
-from ..values import thaw
+from ..record.values import thaw
 
 BREAK_EVERY = 16
 """Characters of an unbroken word after which a line may break."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from ...reports.values import plain
+from ...reports.record.values import plain
 from ...verify.verdict import Claim, Evidence, Quantity, Witness
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from ...models.types import Progress, silent
 from ...reports.join import join
 from ...reports.record import Record
-from ...reports.values import thaw
+from ...reports.record.values import thaw
 from ...scenario import Scenario
 from ..check.record import check_record
 from ..check.result import CheckStudy
@@ -90,7 +90,7 @@ def _audit(check: Record) -> Record:
     """
     from ..paper.audit_record import audit_record, run_audit
 
-    section = thaw(audit_record(run_audit()).sections)["audit"]
+    section = thaw(audit_record(run_audit()).document["sections"])["audit"]
     del section["claims"]
     section["notes"] += ["`intermit audit --json FILE` writes every counterexample in full."]
     return Record.create(title="audit", provenance=check.document["provenance"], sections={"audit": section})

@@ -27,11 +27,10 @@ def test_every_field_is_there() -> None:
 
 def test_the_record_takes_it() -> None:
     undecided = Claim("a", "A", "a", Verdict.UNDECIDED, reason="none found", next_step="more samples")
+    claims = [claim_entry(refuted()), claim_entry(undecided, recheck="intermit check s.toml")]
     record = Record.create(
         title="t",
         provenance=provenance(scenario_name="s", scenario_text=""),
-        sections={
-            "claims": [claim_entry(refuted()), claim_entry(undecided, recheck="intermit check s.toml")]
-        },
+        sections={"audit": {"claims": claims}},
     )
-    assert record.sections["claims"][1]["recheck"] == "intermit check s.toml"
+    assert record.sections.audit.claims[1].recheck == "intermit check s.toml"

@@ -16,7 +16,7 @@ from intermit.reports.content.heading import heading
 from intermit.reports.content.wording import short, visible
 from intermit.reports.html import html_page
 from intermit.reports.numbers import write
-from intermit.reports.values import thaw
+from intermit.reports.record.values import thaw
 from respoken import respoken
 from synthetic_record import make
 

@@ -18,7 +18,7 @@ from intermit.reports.content.figures import drawings, pdf_figures
 from intermit.reports.content.heading import heading
 from intermit.reports.numbers import write
 from intermit.reports.pdf import pdf_document
-from intermit.reports.values import thaw
+from intermit.reports.record.values import thaw
 from outside_tools import need
 from respoken import respoken
 from synthetic_record import make
@@ -55,7 +55,7 @@ def quantities(value: Any) -> list[dict[str, Any]]:
 
 def test_every_number_of_the_record_is_in_the_text(record: Record, document: bytes) -> None:
     text = squeezed("".join(pages(document)))
-    for q in quantities(thaw(record.sections)):
+    for q in quantities(thaw(record.document["sections"])):
         assert squeezed(write(q, unit=False).text) in text, q
 
 

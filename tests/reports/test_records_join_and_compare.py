@@ -11,13 +11,13 @@ from intermit.reports import Record, RecordError, read_record, write_record
 from intermit.reports.build import comparison_files, rebuild_report, write_comparison, write_report
 from intermit.reports.content.comparing import comparison_chapters, comparison_sentence
 from intermit.reports.join import join
-from intermit.reports.values import thaw
+from intermit.reports.record.values import thaw
 from respoken import respoken
 from synthetic_record import make
 
 
 def part(record: Record, *keep: str) -> Record:
-    sections = {k: thaw(v) for k, v in record.sections.items() if k in keep}
+    sections = {k: thaw(v) for k, v in record.document["sections"].items() if k in keep}
     text = repr(sections)
     return Record.create(
         title="part",
@@ -34,9 +34,9 @@ def test_parts_join_into_the_whole(record: Record) -> None:
         part(record, "scenario", "optimum", "front"),
     ]
     whole = join(halves, title="whole", command="intermit report", date="2022-03-04")
-    assert set(whole.sections) == {"scenario", "schedule", "cases", "samples", "optimum", "front"}
+    assert set(whole.document["sections"]) == {"scenario", "schedule", "cases", "samples", "optimum", "front"}
     assert whole.document["provenance"]["date"] == "2022-03-04"
-    assert whole.sections["cases"] == record.sections["cases"]
+    assert whole.sections.cases == record.sections.cases
     assert whole.document["outcome"]["exit_code"] == 1
 
 
@@ -52,7 +52,7 @@ def test_records_of_other_inputs_or_rival_sections_do_not_join(record: Record) -
     one = {"figures": [figure_of_array()]}
     arrays = {"schedule.time": np.zeros(3)}
     same_name = Record.create(
-        title="x", provenance=thaw(record.document["provenance"]), sections={"linear": one}, arrays=arrays
+        title="x", provenance=thaw(record.document["provenance"]), sections={"tuning": one}, arrays=arrays
     )
     with pytest.raises(RecordError, match=r"'schedule\.time'"):
         join([record, same_name], title="t")

@@ -44,7 +44,7 @@ def test_record_is_whole_and_its_outcome_is_the_exit_code(
     record = read_record(out)
     assert record.document["outcome"]["exit_code"] == code
     assert record.document["outcome"]["sentence"] in text
-    assert len(record.sections["cases"]) == 1
+    assert len(record.sections.cases) == 1
     for key, claim in claims_of(out).items():
         assert claim["title"] == CLAIM_KEYS[key].title  # one name everywhere
 

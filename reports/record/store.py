@@ -1,7 +1,7 @@
 """The record: everything found in one study, from which every page is made.
 
-A record is two files side by side, `results.json` (a document described by
-`schema/record.schema.json`) and `results.npz` (the arrays it names). The same study gives the
+A record is two files side by side, `results.json` (a `Document`, whose classes are its schema) and
+`results.npz` (the arrays it names). The same study gives the
 same bytes: keys are sorted, floats are written shortest, nothing is timed and no clock is read.
 """
 
@@ -11,21 +11,22 @@ import hashlib
 import io
 import json
 import zipfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import InputError
-from .structure import faults
-from .values import freeze, plain, thaw
-from .whole_files import write_whole
+from ...errors import InputError
+from ..whole_files import write_whole
+from .base import parts_of
+from .document import FORMAT, VERSION, Document, Outcome, Provenance, Sections, read_document
+from .tables import SeriesEntry
+from .values import freeze, plain
 
-FORMAT = "intermit-record"
-VERSION = 1
 DOCUMENT_NAME = "results.json"
 ARRAYS_NAME = "results.npz"
 
@@ -43,14 +44,13 @@ class Record:
 
     Attributes
     ----------
-    document : Mapping
-        The JSON document, read-only: mappings, tuples, text, numbers. `format`, `version`, `title`,
-        `provenance`, `sections` and `arrays` (shape and sha256 by name).
+    content : Document
+        Title, provenance, sections, outcome, and shape and sha256 of each array by name.
     arrays : Mapping of str to ndarray
         Read-only float64 arrays by name, in SI units.
     """
 
-    document: Mapping[str, Any]
+    content: Document
     arrays: Mapping[str, Array]
 
     @classmethod
@@ -58,17 +58,17 @@ class Record:
         cls,
         *,
         title: str,
-        provenance: Mapping[str, Any],
-        sections: Mapping[str, Any],
+        provenance: Provenance | Mapping[str, Any],
+        sections: Sections | Mapping[str, Any],
         arrays: Mapping[str, ArrayLike] | None = None,
-        outcome: Mapping[str, Any] | None = None,
+        outcome: Outcome | Mapping[str, Any] | None = None,
     ) -> Record:
         """Normalise, check and freeze a study's findings.
 
         Raises
         ------
         RecordError
-            If the document departs from the schema, names an array that is not given, or an array
+            If the document departs from its form, names an array that is not given, or an array
             is not named anywhere.
         """
         held = {str(name): _frozen_array(name, value) for name, value in (arrays or {}).items()}
@@ -76,21 +76,34 @@ class Record:
             "format": FORMAT,
             "version": VERSION,
             "title": title,
-            "provenance": dict(provenance),
-            "sections": dict(sections),
+            "provenance": provenance,
+            "sections": sections,
             "arrays": {name: _describe(value) for name, value in held.items()},
         }
         if outcome is not None:
-            document["outcome"] = dict(outcome)
-        document = plain(document)
-        _check(document, held)
-        return cls(freeze(document), freeze(held))
+            document["outcome"] = outcome
+        return cls(_checked(plain(document), held), freeze(held))
 
     @property
-    def sections(self) -> Mapping[str, Any]:
-        """The sections that were filled in."""
-        sections: Mapping[str, Any] = self.document["sections"]
-        return sections
+    def title(self) -> str:
+        """What the study is called."""
+        return self.content.title
+
+    @property
+    def provenance(self) -> Provenance:
+        """Where the record comes from."""
+        return self.content.provenance
+
+    @property
+    def sections(self) -> Sections:
+        """What was found, section by section."""
+        return self.content.sections
+
+    @cached_property
+    def document(self) -> Mapping[str, Any]:
+        """The document as JSON values, read-only: mappings, tuples, text, numbers."""
+        view: Mapping[str, Any] = freeze(plain(self.content))
+        return view
 
     def array(self, name: str) -> Array:
         """One array by the name the document uses."""
@@ -99,7 +112,7 @@ class Record:
     def to_json(self) -> str:
         """Write the document as text: sorted keys, shortest floats, a newline at the end."""
         return (
-            json.dumps(thaw(self.document), sort_keys=True, indent=1, ensure_ascii=False, allow_nan=False)
+            json.dumps(plain(self.content), sort_keys=True, indent=1, ensure_ascii=False, allow_nan=False)
             + "\n"
         )
 
@@ -147,86 +160,53 @@ def read_record(path: str | Path) -> Record:
             "run the study again"
         )
     arrays = _read_arrays(source.with_suffix(".npz"), bool(document.get("arrays")))
-    _check(document, arrays)
-    return Record(freeze(document), freeze(arrays))
+    try:
+        return Record(_checked(document, arrays), freeze(arrays))
+    except RecordError as error:
+        made = document.get("provenance")
+        by = made.get("package_version") if isinstance(made, dict) else None
+        raise RecordError(
+            f"{source}: {error}; the record was written by intermit {by or 'of an unknown version'} "
+            f"(format version {VERSION}): write it again with this version"
+        ) from None
 
 
-def array_names(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """Every (path, array name) the document's sections refer to."""
-    yield from _names(document["sections"], "sections")
-
-
-_SERIES_KEYS = {"x", "y", "upper"}
-
-
-def _names(value: Any, where: str) -> Iterator[tuple[str, str]]:
-    if isinstance(value, Mapping):
-        for key, item in value.items():
-            here = f"{where}.{key}"
-            if key == "arrays" or (key == "histogram" and isinstance(item, Mapping)):
-                yield from _strings(item, here)
-            elif key == "series":
-                for i, one in enumerate(item):
-                    yield from ((f"{here}[{i}].{k}", one[k]) for k in sorted(_SERIES_KEYS & set(one)))
-            else:
-                yield from _names(item, here)
-    elif isinstance(value, (list, tuple)):
-        for i, item in enumerate(value):
-            yield from _names(item, f"{where}[{i}]")
-
-
-def _strings(value: Any, where: str) -> Iterator[tuple[str, str]]:
-    for key, item in value.items():
-        if key in {"label", "unit"}:
-            continue
-        if isinstance(item, str):
-            yield f"{where}.{key}", item
-        elif isinstance(item, Mapping):
-            yield from _strings(item, f"{where}.{key}")
-
-
-def _check(document: dict[str, Any], arrays: Mapping[str, Array]) -> None:
-    problems = list(faults(document))
-    if problems:
-        more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
-        raise RecordError(problems[0] + more)
-    index = document["arrays"]
-    if set(index) != set(arrays):
-        odd = sorted(set(index) ^ set(arrays))
+def _checked(document: Mapping[str, Any], arrays: Mapping[str, Array]) -> Document:
+    """Read a document and hold it against its arrays."""
+    try:
+        content = read_document(document)
+    except ValueError as error:
+        raise RecordError(str(error)) from None
+    if set(content.arrays) != set(arrays):
+        odd = sorted(set(content.arrays) ^ set(arrays))
         raise RecordError(
             f"the document and the array file do not belong together: {odd[0]!r} is in one only"
         )
     for name, value in arrays.items():
-        if index[name] != _describe(value):
+        if plain(content.arrays[name]) != _describe(value):
             raise RecordError(f"array {name!r} is not the one the document was written with")
-    used = set()
-    for where, name in array_names(document):
-        if name not in arrays:
-            raise RecordError(f"{where}: no array is called {name!r}")
-        used.add(name)
+    used: set[str] = set()
+    for where, part in parts_of(content.sections, "record.sections"):
+        names = part.array_names()
+        for role, name in names.items():
+            if name not in arrays:
+                raise RecordError(f"{where}.{role}: no array is called {name!r}")
+        used |= set(names.values())
+        _check_lengths(part, {role: len(arrays[name]) for role, name in names.items()}, where)
     if unused := sorted(set(arrays) - used):
         raise RecordError(f"array {unused[0]!r} is not named by any section")
-    _check_lengths(document["sections"], arrays, "sections")
+    return content
 
 
-def _check_lengths(value: Any, arrays: Mapping[str, Array], where: str) -> None:
+def _check_lengths(part: object, lengths: Mapping[str, int], where: str) -> None:
     """Every array beside a `time` has as many rows; x and y of a series are equally long."""
-    if isinstance(value, dict):
-        roles = value.get("arrays")
-        if isinstance(roles, dict) and "time" in roles:
-            rows = len(arrays[roles["time"]])
-            for here, name in _strings({k: v for k, v in roles.items() if k != "knots"}, f"{where}.arrays"):
-                if len(arrays[name]) != rows:
-                    raise RecordError(f"{here}: {len(arrays[name])} rows beside {rows} times")
-        if {"x", "y", "label"} <= set(value) and isinstance(value["x"], str):
-            lengths = {len(arrays[value[k]]) for k in _SERIES_KEYS & set(value)}
-            if len(lengths) > 1 and value.get("style") not in {"bars", "step"}:
-                raise RecordError(f"{where}: x and y have different lengths")
-        for key, item in value.items():
-            _check_lengths(item, arrays, f"{where}.{key}")
-    elif isinstance(value, list):
-        for i, item in enumerate(value):
-            _check_lengths(item, arrays, f"{where}[{i}]")
+    rows = lengths.get("time")
+    if rows is not None:
+        for role, length in lengths.items():
+            if length != rows:
+                raise RecordError(f"{where}.{role}: {length} rows beside {rows} times")
+    if isinstance(part, SeriesEntry) and part.style not in {"bars", "step"} and len({*lengths.values()}) > 1:
+        raise RecordError(f"{where}: x and y have different lengths")
 
 
 def _frozen_array(name: str, value: ArrayLike) -> Array:

@@ -12,6 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from .base import Part
+
 
 def plain(value: Any, where: str = "record") -> Any:
     """Turn a value into what JSON can say, without losing anything silently.
@@ -27,6 +29,8 @@ def plain(value: Any, where: str = "record") -> Any:
     """
     if value is None or isinstance(value, bool):
         return value
+    if isinstance(value, Part):
+        return {name: plain(item, f"{where}.{name}") for name, item in value.given().items()}
     if isinstance(value, Enum):
         return plain(value.value, where)
     if isinstance(value, str):

@@ -1,0 +1,52 @@
+"""The least peak any controller could do with: value, certified bound, checks and history."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from .base import ArrayOf, Integer, Number, Part, Unit
+from .claims import QuantityEntry
+from .runs import EffortEntry
+
+
+class OptimumArrays(Part):
+    """Names of the histories of one optimum."""
+
+    time: Annotated[str, ArrayOf("s")]
+    quaternion: Annotated[str | None, ArrayOf("", "(n, 4)")] = None
+    rate: Annotated[str | None, ArrayOf("rad/s", "(n, 3)")] = None
+    torque: Annotated[str | None, ArrayOf("N m", "(n, 3)")] = None
+    switching: Annotated[str | None, ArrayOf("", "(n,) or (n, m)")] = None
+    profile: Annotated[str | None, ArrayOf()] = None
+    momentum: Annotated[str | None, ArrayOf("N m s")] = None
+
+
+class LocalOptima(Part):
+    """Distinct local optima of all starts."""
+
+    starts: Integer
+    values: tuple[Number, ...]
+    unit: str = ""
+    spread: QuantityEntry | None = None
+
+
+class OptimumEntry(Part):
+    """One least peak."""
+
+    key: str
+    label: str
+    norm: Literal["component", "euclidean", "thrusters"]
+    value: QuantityEntry
+    profile: str = ""
+    terminal: str = ""
+    final_time: QuantityEntry | None = None
+    bound: QuantityEntry | None = None
+    bound_name: str | None = None
+    other_bounds: tuple[QuantityEntry, ...] = ()
+    gap: QuantityEntry | None = None
+    arrays: OptimumArrays | None = None
+    switch_times: Annotated[tuple[Number, ...], Unit("s")] = ()
+    residuals: tuple[QuantityEntry, ...] = ()
+    local_optima: LocalOptima | None = None
+    effort: tuple[EffortEntry, ...] = ()
+    notes: tuple[str, ...] = ()
