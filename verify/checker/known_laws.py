@@ -133,48 +133,44 @@ NAMED: dict[str, Callable[[Loop, Node], bool]] = {
 }
 """Laws that may be called by name, with the test of a program."""
 
-LOOPS = {  # these two laws are known by their equations: see `compared_law`
-    "persistence-filter": "kappa = 1/R",
-    "adaptive-scaling": "kappa = k, k' = gamma R g^2 [(1 + b0) Omega'J Omega + 2 a |bv|^2]",
-}
+FAMILY = "whose torque gives J Omega' = -Omega x J w - (g^2/2) kappa (1 + b0) J Omega,"
 
 
 @dataclass(frozen=True)
-class Compared:
-    """A law that the comparison theorem of the floor is about, read off its equations.
+class Scaled:
+    """A law of the family, proved for every inertia; lam is lambda, a number in its equations."""
 
-    `gain` is a key of `LOOPS`; lam, gamma and a are numbers in the equations, whatever the file calls them.
-    """
-
-    gain: str
+    loop: Loop
+    motion: Motion
     lam: Fraction
-    gamma: Fraction
-    a: Fraction
 
 
-def compared_law(data: Node) -> Compared:
-    """Return which law of the family the program of the data is, proved for every inertia."""
+def read_scaled(data: Node) -> Scaled:
+    """Return the law of the data, whose states are R, or R and k, with the family's torque and filter."""
     law = data["law"]
     loop = read_loop(data, Node({}, "storage"), symbolic=False, J=None)
     kappa, ring = gain_of(loop), loop.ring
-    adaptive = "k" in loop.states
     true_name(loop, law)
     motion = move(loop, law, augmented(loop, kappa))
-    words = "k" if adaptive else "1/R"
+    words = "k" if "k" in loop.states else "1/R"
     for p in excess(loop, motion, kappa):
         require(
             not p.terms,
             f"its torque does not give J Omega' = -Omega x J w - (g^2/2) kappa (1 + b0) J Omega for "
             f"Omega = w + 2 g^2 kappa bv, kappa = {words}",
         )
-    zero, one = ring.constant(0), ring.constant(1)
-    rest = on_sphere(motion.rates["R"] - filter_slope(loop, zero))
+    rest = on_sphere(motion.rates["R"] - filter_slope(loop, ring.constant(0)))
     lam = -rest.terms.get(next(iter(ring.symbol("R").terms)), Fraction(0))
     same = not (rest + ring.symbol("R").scaled(lam)).terms
     require(same and lam > 0, "its state R does not obey R' = -lambda R + g^2 (1 + b0) with lambda > 0")
-    if not adaptive:
-        return Compared("persistence-filter", lam, Fraction(0), Fraction(0))
-    slope = on_sphere(motion.rates["k"])
+    return Scaled(loop, motion, lam)
+
+
+def gain_numbers(scaled: Scaled) -> tuple[Fraction, Fraction]:
+    """Return gamma and a of the law's state k, whose rate is proved to be the adaptive one."""
+    loop = scaled.loop
+    zero, one = loop.ring.constant(0), loop.ring.constant(1)
+    slope = on_sphere(scaled.motion.rates["k"])
     unit, other = on_sphere(gain_slope(loop, one, zero)), on_sphere(gain_slope(loop, one, one))
     first = next(iter(unit.terms))
     gamma = slope.terms.get(first, Fraction(0)) / unit.terms[first]
@@ -185,7 +181,7 @@ def compared_law(data: Node) -> Compared:
         same and gamma > 0 and a > 0,
         "its state k does not obey k' = gamma R g^2 [(1 + b0) Omega'J Omega + 2 a |bv|^2] with gamma, a > 0",
     )
-    return Compared("adaptive-scaling", lam, gamma, a)
+    return gamma, a
 
 
 def describe_law(data: Node, *, symbolic: bool) -> str:

@@ -63,13 +63,16 @@ def compared_law(law: Law) -> ComparedLaw:
         form = law_form(loop)
     except NotAlgebraicError as error:
         raise NoComparisonError(f"no comparison theorem covers {law_words(law)}: {error}") from None
+    gamma = weight = Fraction(0)
+    adaptive = "k" in loop.controller_states
     try:
-        found = checker.compared_law(
+        scaled = checker.read_scaled(
             checker.Node(as_text({"law": form, "parameters": law.parameters}), "law")
         )
+        if adaptive:
+            gamma, weight = checker.gain_numbers(scaled)
     except checker.Invalid as error:
         raise NoComparisonError(f"no comparison theorem covers {law_words(law)}: {error}") from None
-    adaptive = found.gain == "adaptive-scaling"
     kappa = loop.controller_states["k"] if adaptive else 1 / loop.controller_states["R"]
     if loop.control.gain is None or not vanishes(loop, loop.control.gain - kappa):
         raise NoComparisonError(
@@ -79,7 +82,7 @@ def compared_law(law: Law) -> ComparedLaw:
     start = {state.name: Fraction(state.initial) for state in law.controller_states}
     if start["R"] <= 0 or start.get("k", Fraction(0)) < 0:
         raise NoComparisonError(f"{law_words(law)}: a proof needs R(0) > 0 and k(0) >= 0")
-    return ComparedLaw(adaptive, found.lam, found.gamma, found.a, start["R"], start.get("k", Fraction(0)))
+    return ComparedLaw(adaptive, scaled.lam, gamma, weight, start["R"], start.get("k", Fraction(0)))
 
 
 def has_comparison(law: Law) -> bool:
