@@ -13,6 +13,9 @@ from .document import Document
 from .errors import ScenarioError
 from .schema import SpacecraftTable
 
+MAX_RATIO = 1e6
+"""Greatest over least principal inertia: a run's quickest motion is so much quicker than its slowest."""
+
 
 def build(
     table: SpacecraftTable, document: Document
@@ -31,6 +34,13 @@ def build(
         body = RigidBody(matrix)
     except ValueError as error:
         raise ScenarioError(key, str(error)) from None
+    least, _, greatest = np.sort(body.principal_inertias)
+    if greatest > MAX_RATIO * least:
+        raise ScenarioError(
+            key,
+            f"principal inertias from {least:.6g} to {greatest:.6g} kg m^2: their ratio is "
+            f"{greatest / least:.3g}, and beyond {MAX_RATIO:g} no motion can be followed in double precision",
+        )
     warnings: tuple[str, ...] = ()
     if not body.satisfies_triangle_inequality:
         a, b, c = np.sort(body.principal_inertias)

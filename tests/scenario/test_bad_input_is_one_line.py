@@ -83,7 +83,16 @@ BAD_TABLES = {
         {"spacecraft": "inertia = [[1, 0, 0], [0, 1, 0]]"},
         "scenario.toml: spacecraft.inertia[3]: required, but missing",
     ),
-    "no inertia": ({"spacecraft": ""}, "scenario.toml: spacecraft.inertia: required, but missing"),
+    "no inertia": (
+        {"spacecraft": ""},
+        "scenario.toml: spacecraft.inertia: required, but missing (or give inertia_moments with "
+        "inertia_products)",
+    ),
+    "inertia beyond following": (
+        {"spacecraft": INERTIA.format(3, "1e12", 2)},
+        "scenario.toml: spacecraft.inertia: principal inertias from 2 to 1e+12 kg m^2: their ratio is 5e+11, "
+        "and beyond 1e+06 no motion can be followed in double precision",
+    ),
     "no spacecraft": ({"spacecraft": None}, "scenario.toml: spacecraft: required, but missing"),
     "negative tolerance": (
         {"spacecraft": INERTIA.format(3, 3, 2) + "\ninertia_tolerance = -0.1"},

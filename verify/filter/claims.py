@@ -243,7 +243,8 @@ def _other_answers(facts: FloorFacts) -> tuple[Quantity, ...]:
         label = f"R_min along the simulated run to {end:g} s"
         found.append(Quantity.point("floor_along_run", value, "s", digits=7, label=label))
     if facts.worst is not None:
-        label = f"R_min worst found in {facts.worst.runs} runs over the set to {facts.worst.horizon:g} s"
+        runs = f"{facts.worst.runs} run{'s' if facts.worst.runs > 1 else ''}"
+        label = f"R_min worst found in {runs} over the set to {facts.worst.horizon:g} s"
         found.append(Quantity.point("worst_floor_found", facts.worst.value, "s", digits=7, label=label))
     return tuple(found)
 

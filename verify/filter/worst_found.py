@@ -20,8 +20,8 @@ from ...models.schedule import Schedule
 from ...models.types import Array
 from .sets import InitialSet
 
-SEARCHING = Tolerances(rtol=1e-8, atol=1e-10)
-"""The least R found is an estimate: eight digits of each run are more than enough."""
+SEARCHING = Tolerances(rtol=1e-8, atol=1e-10, phase_evaluations=5000)
+"""The least R found is an estimate: eight digits are more than enough; a run too stiff is left out."""
 INSIDE = 1 - 1e-9
 """Keeps sampled states inside the set whatever the rounding."""
 
@@ -59,7 +59,7 @@ class WorstFound:
     quaternion, rate : the initial state, (4,) and (3,) rad/s
     instant : when R was least, s
     peak_component, peak_euclidean : largest applied torque of any of the runs, N m
-    runs, horizon : number of simulated runs, and to when each went, s
+    runs, horizon : number of runs from starts in the set that got to the horizon, and that, s
     """
 
     value: float
@@ -95,7 +95,6 @@ def find_worst(
     shape = _Shape(law, body, schedule, initial, max_rate)
     points = shape.draw(rng, options.samples)
     values, times, peaks = shape.run(points, horizon)
-    runs = options.samples
     radius = 0.3
     for _ in range(options.rounds):
         best = points[np.argsort(values)[:8]]
@@ -105,7 +104,6 @@ def find_worst(
         peaks = np.maximum(peaks, largest)
         points, values = np.vstack([points, fresh]), np.append(values, found)
         times = np.append(times, when)
-        runs += options.local
         radius *= 0.5
     worst = int(np.argmin(values))
     if not np.isfinite(values[worst]):
@@ -113,7 +111,7 @@ def find_worst(
     state = shape.states(points[worst : worst + 1])[0]
     return WorstFound(
         float(values[worst]), tuple(state[:4].tolist()), tuple(state[4:].tolist()), float(times[worst]),
-        float(peaks[0]), float(peaks[1]), runs, float(horizon),
+        float(peaks[0]), float(peaks[1]), int(np.isfinite(values).sum()), float(horizon),
     )  # fmt: skip
 
 
