@@ -12,6 +12,7 @@ from typing import final
 
 import numpy as np
 
+from ...verify.exact.rounding import rounded_down
 from ..norms import Euclidean, LargestComponent
 from ..problem import TransferProblem
 from .argument import Argument, ComponentsArgument, MomentumArgument, PathArgument, StartSet
@@ -24,7 +25,7 @@ from .sets.momentum_sets import MomentumSet, UnitBall
 from .windows.coast import Coast, coasts
 from .windows.components import TransferSides, Widths, component_bounds, peak_from_components
 from .windows.deviation import deviation_above, growth_of_deviations
-from .windows.travel import WindowTravel, least_peak, momentum_peak, rounded_down
+from .windows.travel import WindowTravel, least_peak, momentum_peak
 
 TRIALS = (1.0, 1.03, 1.07, 1.12, 1.18, 1.25, 1.35, 1.5, 1.75)
 """Trial peaks of the bound by components over the best other bound: any are valid, the best is kept."""

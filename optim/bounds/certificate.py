@@ -13,19 +13,21 @@ from typing import Any
 
 from ...verify import checker
 from ...verify.certificates import Certificate, certificate_text
+from ...verify.exact.ball import length
+from ...verify.exact.rounding import grid_above, grid_below, rounded_down
 from ..norms import Euclidean, LargestComponent, Norm, ThrusterAxes
 from ..problem import TransferProblem
 from .argument import Argument, ComponentsArgument, MomentumArgument, PathArgument
 from .bound import LowerBound, NamedBound, start_momentum
 from .potential.path import PathBound
 from .potential.separation import Separation
-from .sets.chart import square_root
 from .sets.gauge import GaugeSet, torque_vertices
 from .sets.momentum_sets import MomentumSet, greatest_inertia_above, least_inertia_below
-from .windows.travel import WindowTravel, least_peak, rounded_down
+from .sets.polynomials import exponents
+from .windows.travel import WindowTravel, least_peak
 
 KIND = "peak-lower-bound"
-_FINE = 2**120
+_BITS = 120
 _LESS = 1 - Fraction(1, 2**64)
 """The checker rounds its square roots: a travel is claimed a trifle smaller."""
 
@@ -95,8 +97,7 @@ def _scale(problem: TransferProblem, argument: Argument) -> tuple[Fraction, Frac
     """Radius of the ball of momenta that holds the torques, enclosed; 1 where the set holds them itself."""
     if isinstance(argument.momenta, GaugeSet) or isinstance(problem.norm, Euclidean):
         return Fraction(1), Fraction(1)
-    square = max(sum((x * x for x in t), Fraction(0)) for t in torque_vertices(problem.norm))
-    return square_root(square)
+    return max(length(t) for t in torque_vertices(problem.norm))
 
 
 def _rows(momenta: MomentumSet, problem: TransferProblem) -> list[tuple[Fraction, Fraction]]:
@@ -187,14 +188,16 @@ def _separation(proof: Separation | None, scale: Fraction) -> dict[str, Any]:
             "inner": chart.inner,
             "outer": chart.outer,
         },
-        "potential": [[*e, c] for e, c in proof.potential.items()],
+        "potential": [
+            [*e, c] for e in exponents(proof.potential.degree) if (c := proof.potential.coefficient(e))
+        ],
         "rate": Fraction(proof.supremum.value) * scale,
     }
 
 
 def _down(x: Fraction) -> Fraction:
-    return Fraction((x * _FINE).__floor__(), _FINE)
+    return grid_below(x, _BITS)
 
 
 def _up(x: Fraction) -> Fraction:
-    return Fraction((x * _FINE).__ceil__(), _FINE)
+    return grid_above(x, _BITS)

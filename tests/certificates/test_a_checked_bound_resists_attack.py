@@ -19,7 +19,7 @@ from intermit.optim.bounds.potential.separation import Target, proved_separation
 from intermit.optim.bounds.sets.chart import arc_to_identity, chart_between
 from intermit.optim.bounds.sets.gauge import invariant_set
 from intermit.optim.bounds.sets.momentum_sets import UnitBall
-from intermit.optim.bounds.sets.polynomials import AXES
+from intermit.optim.bounds.sets.polynomials import AXES, RING
 from intermit.optim.bounds.windows.travel import WindowTravel, least_peak
 from intermit.optim.norms import Euclidean, LargestComponent
 from intermit.optim.peak import MultiStart, Refinement, minimum_peak
@@ -60,7 +60,13 @@ def bound_by_a_linear_potential(case):
     along = {e: c / 100 for e, c in random_cubic(3, 4).items() if sum(e) > 1}
     along |= dict(zip(AXES, chart.direction, strict=True))
     found = proved_separation(
-        case.body, q, Target(), momenta, chart, along, BranchAndBound(tolerance=1e-2, most_boxes=20_000)
+        case.body,
+        q,
+        Target(),
+        momenta,
+        chart,
+        RING.polynomial(along),
+        BranchAndBound(tolerance=1e-2, most_boxes=20_000),
     )
     assert found.travel > 0
     path = PathBound(found.travel, ((1, found), (-1, None)))

@@ -1,4 +1,4 @@
-"""The polynomials that a search starts from are those that the checker derives from the certificate by itself."""
+"""The polynomials that a search starts from are those that the checker derives from the certificate."""
 
 from fractions import Fraction as F
 

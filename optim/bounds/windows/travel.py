@@ -167,11 +167,3 @@ def momentum_peak(windows: WindowTravel, start: Fraction, end: Fraction) -> Frac
     if windows.total == 0:
         return Fraction(0)
     return max((start - end) / windows.total, Fraction(0))
-
-
-def rounded_down(x: Fraction) -> float:
-    """Largest float not above x."""
-    from math import inf, nextafter
-
-    value = float(x)
-    return value if Fraction(value) <= x else nextafter(value, -inf)
