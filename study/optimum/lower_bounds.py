@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from decimal import ROUND_FLOOR, Decimal
 from typing import TYPE_CHECKING, Any, final
 
 from ...reports.content.blocks import Axis, Chart
 from ...reports.summary import Shown, Summary
 from ...scenario import Scenario
+from ...verify.exact.rounding import digits_below
 from ...verify.verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict
 from ..options import NormKey, OptimumOptions
 from ..plots import draw
@@ -125,8 +125,7 @@ def bound_claim(problem: TransferProblem, bound: LowerBound) -> Claim:
 
 def below(value: float) -> str:
     """Seven digits of a number > 0, rounded down."""
-    exact = Decimal(value)
-    return f"{exact.quantize(Decimal(1).scaleb(exact.adjusted() - 6), ROUND_FLOOR).normalize():g}"
+    return f"{digits_below(value, 7).normalize():g}"
 
 
 def transfers_data(scenario: Scenario) -> list[Mapping[str, Any]]:

@@ -7,11 +7,13 @@ converged (an upper bound of inf R of every run), along a run, worst found.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from decimal import Decimal
 from fractions import Fraction
 from math import degrees, isfinite
 from typing import Any, final
 
 from ..certificates.format import Certificate
+from ..exact.rounding import digits_above, digits_below
 from ..schedule.zero_runs import longest_zero_run
 from ..verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict
 from .certify import FilterLowerBound
@@ -356,18 +358,14 @@ def _seconds(value: Fraction) -> str:
 
 def _down(value: float) -> str:
     """Five digits, never above the value."""
-    return _shown(value, -1)
+    return _written(digits_below(value, 5))
 
 
 def _up(value: float) -> str:
     """Five digits, never below the value."""
-    return _shown(value, 1)
+    return _written(digits_above(value, 5))
 
 
-def _shown(value: float, direction: int) -> str:
-    from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
-
-    rounding = ROUND_CEILING if direction > 0 else ROUND_FLOOR
-    rounded = Context(prec=5, rounding=rounding).create_decimal(Decimal(value))
-    plain = rounded == 0 or -6 < rounded.adjusted() < 12
-    return f"{rounded:f}" if plain else f"{rounded:e}".replace("e+", "e")
+def _written(value: Decimal) -> str:
+    plain = value == 0 or -6 < value.adjusted() < 12
+    return f"{value:f}" if plain else f"{value:e}".replace("e+", "e")

@@ -15,7 +15,7 @@ from typing import final
 from ...models.schedule import Schedule, Window
 from ...models.schedule import polynomial as poly
 from ...models.schedule.polynomial import Coefficients
-from ..exact.polynomial_range import least_value
+from ..exact.bernstein import least_value
 from ..exact.rational_quantity import rational_quantity, seconds
 from ..verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict, Witness
 from .excitation_screen import MAX_EXACT, screen

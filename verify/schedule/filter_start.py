@@ -6,7 +6,7 @@ from fractions import Fraction
 
 from ...models.schedule import Schedule
 from ...models.schedule import polynomial as poly
-from ..exact.polynomial_range import least_value
+from ..exact.bernstein import least_value
 from ..exact.rational_quantity import rational_quantity
 from ..verdict import Claim, Evidence, EvidenceKind, Verdict, Witness
 

@@ -29,6 +29,7 @@ from ....models.rigid_body import RigidBody
 from ....models.schedule import PiecewisePolynomial
 from ....models.schedule import polynomial as univariate
 from ....verify.exact.ball import square_root
+from ....verify.exact.bisection import bisected
 from ....verify.exact.matrix import Matrix, combination, is_positive_definite, shifted, unit
 from ....verify.exact.rounding import grid_above
 from ..sets.gauge import GaugeSet
@@ -266,12 +267,9 @@ def peak_from_components(
         factors = np.minimum(1 + kappa * p * ratio[:, None], widths) / box
         return float(p * (area * np.maximum(1.0, factors.max(axis=1))).sum())
 
-    low, high = 0.0, float(bounds.trial)
+    high = float(bounds.trial)
     if approximate(high) > float(travel):
-        for _ in range(60):
-            middle = (low + high) / 2
-            low, high = (middle, high) if approximate(middle) <= float(travel) else (low, middle)
-        high = low
+        high, _ = bisected(lambda p: approximate(p) <= float(travel), 0.0, high, steps=60)
     # The float figure only proposes; each candidate is decided in exact arithmetic.
     for margin in (0.0, 1e-12, 1e-10, 1e-8, 1e-6):
         candidate = min(Fraction(high * (1 - margin)), bounds.trial)
