@@ -125,7 +125,7 @@ def gauge(momenta, H):
 
 def polynomial(coefficients, x):
     """Value at points (n, 3)."""
-    return sum(float(c) * (x ** np.array(e)).prod(axis=1) for e, c in coefficients.items())
+    return sum(float(c) * (x ** np.array(e)).prod(axis=1) for e, c in coefficients.terms.items())
 
 
 def turned(q, theta):
