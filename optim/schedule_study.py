@@ -9,6 +9,7 @@ from fractions import Fraction
 from typing import final
 
 from ..models.laws import Law
+from ..models.norms import Norm
 from ..models.schedule import Hermite, Shape, Window, build_schedule
 from ..models.simulation import SimulationError
 from .comparison.measure import Task, run_law
@@ -78,7 +79,7 @@ def study_schedules(
     duty_cycles: Sequence[Fraction],
     *,
     time: Fraction,
-    norm: str,
+    norm: Norm,
     floor: FloorOf,
     family: ScheduleFamily | None = None,
     executor: Executor | None = None,
@@ -102,7 +103,7 @@ def study_schedules(
 
 
 def study_case(
-    law: Law, task: Task, period: Fraction, on_time: Fraction, time: Fraction, norm: str, floor: FloorOf
+    law: Law, task: Task, period: Fraction, on_time: Fraction, time: Fraction, norm: Norm, floor: FloorOf
 ) -> ScheduleCase:
     """One case of the study."""
     settling, peak = None, None
@@ -142,7 +143,7 @@ def least_on_time(
     *,
     torque_limit: Fraction,
     time: Fraction,
-    norm: str,
+    norm: Norm,
     floor: FloorOf,
     family: ScheduleFamily | None = None,
     resolution: Fraction = Fraction(1, 100),

@@ -13,7 +13,6 @@ from typing import final
 import numpy as np
 
 from ...verify.exact.rounding import rounded_down
-from ..norms import Euclidean, LargestComponent
 from ..problem import TransferProblem
 from .argument import Argument, ComponentsArgument, MomentumArgument, PathArgument, StartSet
 from .potential.cache import remembered
@@ -97,7 +96,7 @@ def certified_lower_bound(problem: TransferProblem, *, options: PathOptions | No
     component from rest to exact rest, components.
     """
     options = options or PathOptions()
-    if isinstance(problem.norm, Euclidean):
+    if problem.norm.is_ball:
         bounds = _euclidean(problem, options)
     else:
         # The invariant set lies in the ball of the longest torque: little is lost by a coarse potential here.
@@ -120,7 +119,7 @@ def _by_invariant_set(problem: TransferProblem, options: PathOptions) -> list[Na
     names = ("momentum in the invariant set", "invariant set")
     result = _momentum_and_path(problem, momenta, options, names)
     at_rest = problem.starts_at_rest and not problem.terminal.rate
-    if isinstance(problem.norm, LargestComponent) and at_rest and options.components:
+    if problem.norm.is_cube and at_rest and options.components:
         result += _by_components(problem, momenta, options, max(bound.exact for bound in result))
     return result
 

@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import final
 
 from ...models.laws import Law
+from ...models.norms import Norm
 from ..comparison.measure import LawRun, Task, run_law
 from .evaluate import EnsembleRuns
 from .search import DifferentialEvolution, SearchHistory, Trial
@@ -35,7 +36,7 @@ class Tuned:
 
     label: str
     settle: Fraction
-    norm: str
+    norm: Norm
     law: Law | None
     history: SearchHistory
     refused: tuple[tuple[Trial, str], ...]
@@ -51,7 +52,7 @@ def tune(
     task: Task,
     *,
     settle: Fraction,
-    norm: str,
+    norm: Norm,
     label: str = "",
     ranges: Mapping[str, tuple[Fraction, Fraction]] | None = None,
     method: DifferentialEvolution | None = None,
@@ -67,7 +68,7 @@ def tune(
     task : Task
     settle : Fraction
         Latest settling time, s.
-    norm : "component" or "euclidean"
+    norm : Norm
         Of the peak that is made small.
     ranges : mapping, optional
         (low, high) by parameter; a factor of 30 either way of the given value by default.

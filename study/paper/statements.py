@@ -17,6 +17,7 @@ import numpy as np
 
 from ...models.ensemble import MetricOptions, simulate_ensemble
 from ...models.laws import AdaptiveScaling, PersistenceFilter
+from ...models.norms import LARGEST_COMPONENT
 from ...optim.comparison.measure import LawRun, Task
 
 CONVERGED = 1e-3
@@ -58,7 +59,7 @@ def statements(slow: LawRun, fast: LawRun, reference: LawRun) -> tuple[Statement
 
 
 def _lower_in_transient(slow: LawRun, reference: LawRun) -> Statement:
-    a, b = slow.peak("component"), reference.peak("component")
+    a, b = slow.peak(LARGEST_COMPONENT), reference.peak(LARGEST_COMPONENT)
     return Statement(
         "lower_in_transient",
         "adaptive peak torque below the persistence filter's in the transient",
@@ -83,7 +84,7 @@ _LATER = "adaptive torque above the persistence filter's later"
 
 
 def _gamma_raises_peak(slow: LawRun, fast: LawRun) -> Statement:
-    a, b = slow.peak("component"), fast.peak("component")
+    a, b = slow.peak(LARGEST_COMPONENT), fast.peak(LARGEST_COMPONENT)
     says = "larger gamma gives higher peaks"
     return Statement("gamma_peak", says, b > a, f"{a:.4g} N m, then {b:.4g} N m")
 
@@ -163,8 +164,8 @@ def survey(
         np.where(np.isnan(m.settling_time), np.inf, m.settling_time) for m in (slow, fast)
     )
     held = {
-        "lower_in_transient": slow.peak_component < reference.peak_component,
-        "gamma_peak": fast.peak_component > slow.peak_component,
+        "lower_in_transient": slow.peak[LARGEST_COMPONENT] < reference.peak[LARGEST_COMPONENT],
+        "gamma_peak": fast.peak[LARGEST_COMPONENT] > slow.peak[LARGEST_COMPONENT],
         "gamma_settling": fast_settling < slow_settling,
     }
     return tuple(

@@ -12,6 +12,7 @@ from fractions import Fraction
 from math import degrees, isfinite
 from typing import Any, final
 
+from ...models.norms import Norm
 from ..certificates.format import Certificate
 from ..exact.rounding import digits_above, digits_below
 from ..schedule.zero_runs import longest_zero_run
@@ -141,7 +142,7 @@ def torque_claim(
     facts: FloorFacts,
     bound: TorqueBound | None,
     limit: Fraction,
-    norm: str,
+    norm: Norm,
     seen: float | None = None,
 ) -> Claim:
     """Claim "torque.limit": the applied torque g u stays within the limit.
@@ -150,7 +151,7 @@ def torque_claim(
     """
     title = "applied torque within its limit"
     floor = facts.floor
-    statement = f"|g u| <= {float(limit):g} N m ({norm})"
+    statement = f"|g u| <= {float(limit):g} {norm.unit} ({norm.key})"
     if floor is None:
         return _undecided("torque.limit", title, statement, facts.no_system, facts.no_system_step)
     where = f"from every start with {floor.initial.description}"
@@ -162,6 +163,11 @@ def torque_claim(
     if not isfinite(bound.applied):
         reason = f"the certified floor of R, {_down(floor.value)} s, lets the gain grow beyond all numbers"
         return _undecided("torque.limit", title, statement, reason, _filter_step(floor), quantities)
+    if not norm.limits_torque:
+        reason = f"what is certified bounds the torque's length: what {norm.name} need for it is not bounded"
+        step = "give the limit as one of the torque's components or length, N m"
+        return _undecided("torque.limit", title, statement, reason, step, quantities)
+    # the torque's length, which is bounded, is never below its peak
     if Fraction(bound.applied) <= limit:
         margin = Quantity(
             "torque_reserve", float(limit) - bound.applied, float(limit) - bound.applied, "N m", "reserve"
@@ -188,12 +194,11 @@ def torque_claim(
     return _undecided("torque.limit", title, statement, reason, step, quantities)
 
 
-def _largest_found(facts: FloorFacts, norm: str, seen: float | None) -> tuple[float, str] | None:
+def _largest_found(facts: FloorFacts, norm: Norm, seen: float | None) -> tuple[float, str] | None:
     """Largest torque that this study saw, N m in that norm, and whose it is."""
     found = [] if seen is None else [(seen, "of the simulated run")]
-    if facts.worst is not None:
-        peaks = {"component": facts.worst.peak_component, "euclidean": facts.worst.peak_euclidean}
-        found.append((peaks[norm], f"of {facts.worst.runs} runs over the set"))
+    if facts.worst is not None and norm in facts.worst.peak:
+        found.append((facts.worst.peak[norm], f"of {facts.worst.runs} runs over the set"))
     return max(found, default=None)
 
 

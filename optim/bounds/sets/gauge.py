@@ -17,16 +17,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 from functools import cached_property
-from itertools import product
 from typing import final
 
 import numpy as np
 
+from ....models.norms import Norm
 from ....models.rigid_body import RigidBody
 from ....models.types import Array
 from ....verify.exact.ball import length, square_root
 from ....verify.exact.matrix import Matrix, quadratic_form, shifted, unit
-from ...norms import Euclidean, LargestComponent, Norm, ThrusterAxes
 from ..program.constraints import CutConstraint, RateConstraint
 from .chart import Vector
 from .momentum_sets import (
@@ -40,8 +39,6 @@ from .momentum_sets import (
     sharpened,
 )
 from .support_table import SupportTable
-
-_MOST_THRUSTERS = 12
 
 
 @final
@@ -147,29 +144,15 @@ class GaugeSet(MomentumSet):
         return GaugeSet(self.body, tuple(matrices), tuple(levels), self._speed)
 
 
-def torque_vertices(norm: Norm) -> list[Vector]:
-    """Points whose convex hull contains the torques of unit peak (and are among them)."""
-    if isinstance(norm, LargestComponent):
-        return [(Fraction(a), Fraction(b), Fraction(c)) for a, b, c in product((-1, 1), repeat=3)]
-    if isinstance(norm, ThrusterAxes):
-        if len(norm.axes) > _MOST_THRUSTERS:
-            raise ValueError(
-                f"lower bounds take at most {_MOST_THRUSTERS} thrusters, received {len(norm.axes)}"
-            )
-        sums: list[Vector] = []
-        for on in product((0, 1), repeat=len(norm.axes)):
-            parts = [axis for axis, used in zip(norm.axes, on, strict=True) if used]
-            x, y, z = (sum((axis[i] for axis in parts), Fraction(0)) for i in range(3))
-            sums.append((x, y, z))
-        return sums
-    raise TypeError(f"no vertices for the {norm.name} norm")
-
-
 def invariant_set(body: RigidBody, norm: Norm) -> GaugeSet:
-    """Build the invariant set of a torque arrangement other than the Euclidean ball."""
-    if isinstance(norm, Euclidean):
-        raise TypeError("the Euclidean norm has the ball for its invariant set")
-    vertices = torque_vertices(norm)
+    """Build the invariant set of a norm whose torques have corners around them.
+
+    Raises
+    ------
+    ValueError
+        If they have none, as those of the Euclidean ball (which is its own invariant set).
+    """
+    vertices = norm.corners()
     inverse = body.exact_inverse
     low = 1 / greatest_inertia_above(body)
     high = 1 / least_inertia_below(body)
@@ -185,4 +168,4 @@ def invariant_set(body: RigidBody, norm: Norm) -> GaugeSet:
 
 def longest_vertex(norm: Norm) -> Fraction:
     """Upper bound of the length of a torque of unit peak."""
-    return max(length(t)[1] for t in torque_vertices(norm))
+    return max(length(t)[1] for t in norm.corners())

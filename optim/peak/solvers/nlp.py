@@ -13,8 +13,8 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import NDArray
 
+from ....models.norms import Norm
 from ....models.types import Array
-from ...norms import Euclidean, LargestComponent, Norm
 from ..transcription.propagate import right_hand_side
 from ..transcription.shooting import Rollout, Shooting
 from ..transcription.terminal import residual_derivative
@@ -246,10 +246,12 @@ def _effort_rows(norm: Norm, V: Any, p: Any) -> list[tuple[Any, Array, Array]]:
     """Rows for effort(v_k) <= p, p >= 0 being a bound."""
     import casadi as ca
 
-    m, n = V.shape
-    if isinstance(norm, Euclidean):
-        return [(p**2 - ca.sum1(V**2).T, np.zeros(n), np.full(n, np.inf))]
-    wide = ca.vec(V)
-    rows = [(p - wide, np.zeros(m * n), np.full(m * n, np.inf))]
-    other = p + wide if isinstance(norm, LargestComponent) else wide
-    return [*rows, (other, np.zeros(m * n), np.full(m * n, np.inf))]
+    rows: list[Any] = []
+    for block, at in norm.parts:
+        part = V if block.size == V.shape[0] else V[at, :]
+        if block.is_round:
+            rows.append(p**2 - ca.sum1(part**2).T)
+        else:
+            wide = ca.vec(part)
+            rows += [p - wide, wide if block.is_one_sided else p + wide]
+    return [(row, np.zeros(row.numel()), np.full(row.numel(), np.inf)) for row in rows]

@@ -15,8 +15,8 @@ from typing import Any, final
 
 import numpy as np
 
+from ....models.norms import Norm
 from ....models.types import Array
-from ...norms import Norm
 from .curvature import Curvature
 from .effort_cones import effort_cones
 from .goal import Goal

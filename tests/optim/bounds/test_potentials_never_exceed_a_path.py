@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from intermit.models.norms import LARGEST_COMPONENT
 from intermit.models.rigid_body import RigidBody
 from intermit.optim.bounds.potential.fit import Fit
 from intermit.optim.bounds.potential.prove import BranchAndBound
@@ -20,7 +21,6 @@ from intermit.optim.bounds.sets.chart import chart_between
 from intermit.optim.bounds.sets.gauge import invariant_set
 from intermit.optim.bounds.sets.momentum_sets import UnitBall
 from intermit.optim.bounds.sets.rate import momentum_rate_polynomials
-from intermit.optim.norms import LargestComponent
 from intermit.optim.problem import quaternion_from_axis_angle
 from problems import UNIT
 from transfers import TETRAHEDRON
@@ -90,8 +90,8 @@ def test_j1_is_within_half_a_percent_of_the_shortest_path():
 
 def momentum_sets():
     """Sets of every kind, for inertias of axis ratio 1 to 3."""
-    cube, tetrahedron = invariant_set(J1, LargestComponent()), invariant_set(PRINCIPAL, TETRAHEDRON)
-    slim = invariant_set(SLIM, LargestComponent())
+    cube, tetrahedron = invariant_set(J1, LARGEST_COMPONENT), invariant_set(PRINCIPAL, TETRAHEDRON)
+    slim = invariant_set(SLIM, LARGEST_COMPONENT)
     return [
         UnitBall(PRINCIPAL),
         UnitBall(J1),
@@ -99,7 +99,7 @@ def momentum_sets():
         cube,
         tetrahedron,
         slim.with_box((Fraction(6, 5), Fraction(13, 10), Fraction(1))),
-        invariant_set(UNIT, LargestComponent()).with_box((Fraction(1),) * 3),
+        invariant_set(UNIT, LARGEST_COMPONENT).with_box((Fraction(1),) * 3),
     ]
 
 
