@@ -88,8 +88,24 @@ def study_schedules(
 
     Parameters
     ----------
-    time : transfer time of the optimum, s, the same for all cases
-    floor : certified floor of R, a function that can be pickled
+    law : Law
+        The law that is run through every schedule.
+    task : Task
+        Body, start and tolerances; its own schedule is replaced by each case's.
+    periods : Sequence[Fraction]
+        Periods, s, each > 0.
+    duty_cycles : Sequence[Fraction]
+        Window time over period, each in (0, 1).
+    time : Fraction
+        Transfer time of the optimum, s, the same for all cases.
+    norm : str
+        Of the torque, "component" or "euclidean".
+    floor : FloorOf
+        Certified floor of R, a function that can be pickled.
+    family : ScheduleFamily, optional
+        How a period and a duty cycle make a schedule; its defaults without one.
+    executor : Executor, optional
+        Workers that share the cases; None does them here.
     """
     family = family if family is not None else ScheduleFamily()
     jobs = [

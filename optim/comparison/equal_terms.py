@@ -83,8 +83,14 @@ def on_equal_terms(
 
     Parameters
     ----------
-    goal : the end asked for; None for the law's settling
-    profile : GAIN compares the command u through w = g, FULL the applied torque g u
+    run : LawRun
+        The law's run, with its task.
+    norm : NormName
+        Norm of the torque whose peak is compared.
+    goal : Goal, optional
+        The end asked for; None for the law's settling.
+    profile : WindowProfile
+        GAIN compares the command u through w = g, FULL the applied torque g u.
 
     Raises
     ------

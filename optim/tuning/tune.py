@@ -66,14 +66,21 @@ def tune(
     law : Law
         Its positive parameters are varied.
     task : Task
+        What it has to do: body, windows, start, tolerances, horizon.
     settle : Fraction
         Latest settling time, s.
     norm : Norm
         Of the peak that is made small.
+    label : str
+        Name in the result; the law's own without one.
     ranges : mapping, optional
         (low, high) by parameter; a factor of 30 either way of the given value by default.
+    method : DifferentialEvolution, optional
+        The search and its effort; its defaults without one.
     certify : callable, optional
         Conditions the answer must meet.
+    start_from_law : bool
+        Whether the law's own parameters are the first candidate.
 
     Returns
     -------

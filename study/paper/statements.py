@@ -46,8 +46,10 @@ def statements(slow: LawRun, fast: LawRun, reference: LawRun) -> tuple[Statement
 
     Parameters
     ----------
-    slow, fast : adaptive scaling with the smaller and the larger gamma
-    reference : the persistence-filter law
+    slow, fast : LawRun
+        Adaptive scaling with the smaller and the larger gamma.
+    reference : LawRun
+        The persistence-filter law.
     """
     return (
         _lower_in_transient(slow, reference),

@@ -101,7 +101,8 @@ def test_a_law_never_beats_the_optimum_on_its_own_terms(law, norm, profile):
         terminal=Terminal(attitude=Fraction(attitude), rate=Fraction(rate)),
         profile=profile,
     )
-    knots = [float(k) for k in paper_schedule().knots_between(Fraction(0), horizon)]
+    knots = [0.0, *(float(p.end) for p in paper_schedule().pieces_between(Fraction(0), horizon))]
+    knots = [*(k for k in knots if k < horizon), float(horizon)]
     flown = replay_torque(problem, lambda t: run.signals(t).applied_torque.T, knots=knots)
     assert flown.feasible(terminal=1e-6, torque=1e-9)
     if profile is WindowProfile.FULL:

@@ -64,12 +64,16 @@ def minimum_below(
     Parameters
     ----------
     bound : callable
-        A proved lower bound of the function over a given box; it must not fall when a box shrinks
-        for the loop to make headway, but soundness does not need that.
-    box : the box to cover
-    target : stop once this is proved
-    max_evaluations : stop after this many calls of `bound`
-    scale : one positive length a coordinate, in which widths are compared
+        A proved lower bound of the function over a given box; it must not fall when a box shrinks for the
+        loop to make headway, but soundness does not need that.
+    box : Box
+        The box to cover.
+    target : float
+        Stop once this is proved.
+    max_evaluations : int
+        Stop after this many calls of `bound`.
+    scale : tuple[float, ...], optional
+        One positive length a coordinate, in which widths are compared.
     """
     evaluations = 0
 

@@ -46,9 +46,14 @@ def greatest_certified(holds: Holds, first: Fraction, *, limit: Fraction, steps:
 
     Parameters
     ----------
-    first : value tried first; doubled while it holds
-    limit : nothing beyond it is tried
-    steps : bisections between the last value that held and the first that did not
+    holds : Holds
+        Whether something is certified at a value; may be false where it is true.
+    first : Fraction
+        Value tried first; doubled while it holds.
+    limit : Fraction
+        Nothing beyond it is tried.
+    steps : int
+        Bisections between the last value that held and the first that did not.
     """
     if not 0 < first <= limit:
         raise ValueError("expected 0 < first <= limit")

@@ -27,10 +27,16 @@ def refuted_limit(
 
     Parameters
     ----------
-    claim : "torque.limit", undecided
-    quaternion : (4,), scalar first; a rational one beside it is used, inside the set
-    rate : (3,), rad/s
-    at : time at which a simulation found the limit exceeded, s, > 0
+    claim : Claim
+        "torque.limit", undecided.
+    question : FloorQuestion
+        What was asked: law, body, schedule, set, limit.
+    quaternion : Sequence[float]
+        (4,), scalar first; a rational one beside it is used, inside the set.
+    rate : Sequence[Fraction]
+        (3,), rad/s.
+    at : float
+        Time at which a simulation found the limit exceeded, s, > 0.
 
     Returns
     -------

@@ -39,13 +39,11 @@ class DecayCertificate:
     Attributes
     ----------
     rate : Fraction, 1/s
-    attempted : float, the rate at which the solver's search ended, not proved
     statement : the claim as the checker words it
     """
 
     certificate: Certificate
     rate: Fraction
-    attempted: float
     statement: tuple[str, ...]
 
 
@@ -103,7 +101,7 @@ def certify_decay(
     for tried in _rates(best) if rate is None else iter([rate]):
         grams = _all_grams(problems, tried)
         if grams is not None:
-            return _accepted(data, claim, tried, grams, best, problems[0][0].names)
+            return _accepted(data, claim, tried, grams, problems[0][0].names)
     raise NoCertificateError(
         f"no Gram matrix could be rounded at or below {best:.6g} 1/s, where the solver's search ended"
     )
@@ -183,7 +181,6 @@ def _accepted(
     claim: dict[str, Any],
     rate: Fraction,
     grams: list[list[Term]],
-    best: float,
     names: tuple[str, ...],
 ) -> DecayCertificate:
     """Write the certificate and ask the checker."""
@@ -192,7 +189,7 @@ def _accepted(
     (finding,) = checker.check_text(certificate_text([certificate]))
     if not finding.valid:
         raise NoCertificateError(f"the checker refused the certificate: {finding.reason}")
-    return DecayCertificate(certificate, rate, best, finding.claim)
+    return DecayCertificate(certificate, rate, finding.claim)
 
 
 def _term(common: Mapping[str, int], gram: Gram, names: tuple[str, ...]) -> dict[str, Any]:

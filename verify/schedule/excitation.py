@@ -73,6 +73,7 @@ def excitation(schedule: Schedule, length: Fraction) -> Excitation:
     Parameters
     ----------
     schedule : Schedule
+        The schedule whose g it is about.
     length : Fraction
         T > 0, s. For a finite table only intervals within it count.
 
@@ -131,6 +132,7 @@ def excitation_claim(schedule: Schedule, length: Fraction | None = None) -> Clai
     Parameters
     ----------
     schedule : Schedule
+        The schedule whose g it is about.
     length : Fraction or None
         T, s; by default `default_length`.
 

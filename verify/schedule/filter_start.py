@@ -21,8 +21,12 @@ def filter_start_claim(schedule: Schedule, *, decay: Fraction, initial: Fraction
 
     Parameters
     ----------
-    decay : lambda, 1/s, > 0
-    initial : R(0), s
+    schedule : Schedule
+        The schedule whose g drives the filter.
+    decay : Fraction
+        lambda, 1/s, > 0.
+    initial : Fraction
+        R(0), s.
 
     Returns
     -------
