@@ -26,7 +26,7 @@ _tables: dict[str, bytearray] = {}
 
 
 def functions(tree: ast.Module) -> list[tuple[str, ast.FunctionDef]]:
-    """Functions and methods of a module by qualified name; those that only state an interface are left out."""
+    """Functions and methods of a module by qualified name; not those that only state an interface."""
     found = []
     for node in tree.body:
         if isinstance(node, ast.FunctionDef):
