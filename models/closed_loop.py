@@ -10,34 +10,37 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields, is_dataclass
 from fractions import Fraction
 from functools import lru_cache
-from typing import Any, final
+from typing import Any, Literal, final
 
 import casadi as ca
 import numpy as np
 
 from .laws import Control, Expression, Law, PlantSymbols, TimeSymbols
 from .laws.scaled import augmented_rate
-from .norms import LARGEST_COMPONENT, Norm
 from .rigid_body import RigidBody, attitude_rate, momentum_rate
 from .types import Array
 
 PLANT_STATES = ("b0", "b1", "b2", "b3", "w1", "w2", "w3")
 INERTIA_NAMES = ("J11", "J12", "J13", "J22", "J23", "J33")
 INERTIA_ENTRIES = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
+
 """Positions of those names in J."""
 
 
 @final
 @dataclass(frozen=True)
 class Saturation:
-    """A limit on the applied torque, N m, block by block: components clipped, lengths scaled back."""
+    """A limit on the applied torque, N m: each component clipped, or the Euclidean norm scaled back."""
 
     limit: Fraction
-    norm: Norm = LARGEST_COMPONENT
+    norm: Literal["component", "euclidean"] = "component"
 
     def apply(self, torque: Expression) -> Expression:
         """Limited torque, as an expression."""
-        return self.norm.limited(torque, float(self.limit))
+        limit = float(self.limit)
+        if self.norm == "component":
+            return ca.fmin(ca.fmax(torque, -limit), limit)
+        return torque * ca.fmin(1, limit / ca.fmax(ca.norm_2(torque), np.finfo(float).tiny))
 
 
 @final
@@ -192,7 +195,7 @@ def _close_loop(law: Law, saturation: Saturation | None, identity: tuple[object,
     _check_control(law, again, states)
     torque = time.g * control.torque
     torque = saturation.apply(torque) if saturation is not None else torque
-    Jw_rate = momentum_rate(J, w, torque)
+    Jw_rate = momentum_rate(J, w, _acting(control, torque))
     rates = [control.state_rates[name] for name in states]
     signals = [x for name in time.signals for x in (time.signals[name], time.signal_rates[name])]
     loop = ClosedLoop(
@@ -215,6 +218,13 @@ def _close_loop(law: Law, saturation: Saturation | None, identity: tuple[object,
         raise ValueError(f"law {law.name} uses the symbol {strays[0]}, which is none of those it was given")
     _check_repeatable(loop, again)
     return loop
+
+
+def _acting(control: Control, torque: Expression) -> Expression:
+    """What acts on the body where the thrusters are asked for a torque."""
+    if control.thrust is not None:
+        torque = control.thrust @ torque
+    return torque if control.disturbance is None else torque + control.disturbance
 
 
 def _check_repeatable(loop: ClosedLoop, again: Control) -> None:

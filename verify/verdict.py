@@ -35,6 +35,7 @@ class EvidenceKind(Enum):
     CERTIFICATE = "certificate"
     THEOREM = "theorem"
     WITNESS = "witness"
+    COMPUTATION = "computation"
     SAMPLES = "samples"
 
 

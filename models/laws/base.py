@@ -93,12 +93,16 @@ class Control:
     state_rates : rate of every controller state, by name
     gain, gain_rate : kappa (1/s) and its rate where the law has the form
         Omega = w + 2 g^2 kappa bv; None for other laws
+    thrust : (3, 3), what the thrusters make of g u; None is the unit matrix
+    disturbance : torque that acts beside it, window or not, N m, (3,); None is none
     """
 
     torque: Expression
     state_rates: Mapping[str, Expression] = field(default_factory=dict)
     gain: Expression | None = None
     gain_rate: Expression | None = None
+    thrust: Expression | None = None
+    disturbance: Expression | None = None
 
 
 class Law(ABC):

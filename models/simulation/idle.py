@@ -18,12 +18,7 @@ def idle_lead(law: Law, schedule: Schedule, rate: ArrayLike) -> Fraction:
 
     Parameters
     ----------
-    law : Law
-        The law that is run.
-    schedule : Schedule
-        Its windows.
-    rate : ArrayLike
-        (3,), rad/s: the rate at the start of the run.
+    rate : (3,), rad/s: the rate at the start of the run
     """
     import numpy as np
 

@@ -8,7 +8,6 @@ from fractions import Fraction
 from typing import final
 
 from ...models.laws import Law
-from ...models.norms import Norm
 from ..comparison.measure import LawRun, Task, run_law
 from .evaluate import EnsembleRuns
 from .search import DifferentialEvolution, SearchHistory, Trial
@@ -36,7 +35,7 @@ class Tuned:
 
     label: str
     settle: Fraction
-    norm: Norm
+    norm: str
     law: Law | None
     history: SearchHistory
     refused: tuple[tuple[Trial, str], ...]
@@ -52,7 +51,7 @@ def tune(
     task: Task,
     *,
     settle: Fraction,
-    norm: Norm,
+    norm: str,
     label: str = "",
     ranges: Mapping[str, tuple[Fraction, Fraction]] | None = None,
     method: DifferentialEvolution | None = None,
@@ -66,21 +65,14 @@ def tune(
     law : Law
         Its positive parameters are varied.
     task : Task
-        What it has to do: body, windows, start, tolerances, horizon.
     settle : Fraction
         Latest settling time, s.
-    norm : Norm
+    norm : "component" or "euclidean"
         Of the peak that is made small.
-    label : str
-        Name in the result; the law's own without one.
     ranges : mapping, optional
         (low, high) by parameter; a factor of 30 either way of the given value by default.
-    method : DifferentialEvolution, optional
-        The search and its effort; its defaults without one.
     certify : callable, optional
         Conditions the answer must meet.
-    start_from_law : bool
-        Whether the law's own parameters are the first candidate.
 
     Returns
     -------

@@ -19,10 +19,7 @@ def excitation_certificate(schedule: Schedule, length: Fraction) -> Certificate 
 
     Parameters
     ----------
-    schedule : Schedule
-        The schedule whose g it is about.
-    length : Fraction
-        T, s.
+    length : T, s
     """
     if len(schedule.profile.shapes) > MAX_PIECES:
         return None

@@ -31,6 +31,7 @@ from . import (
     lyapunov_identity,
     peak_lower_bound,
     persistence,
+    robust_floor,
     schedule_excitation,
     schedule_facts,
 )
@@ -155,6 +156,7 @@ __all__ = [
     "report",
     "require",
     "require_change",
+    "robust_floor",
     "root_above",
     "rounding_units",
     "run",

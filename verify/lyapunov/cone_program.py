@@ -13,7 +13,9 @@ from typing import final
 import numpy as np
 
 from ...models.types import Array
-from ..solver_status import clarabel_status
+
+USABLE = frozenset({"Solved", "AlmostSolved"})
+"""Clarabel's words after which its numbers are worth rounding (they prove nothing by themselves)."""
 
 
 @final
@@ -40,18 +42,11 @@ def maximise_level(
 
     Parameters
     ----------
-    sizes : Sequence[int]
-        Orders of the matrices G_i.
-    equations : Sequence[dict[int, float]]
-        Rows of A: column number -> coefficient.
-    columns : Sequence[tuple[int, int, int]]
-        (matrix, p, q) with p <= q of each entry h: G[p, q] = G[q, p] = h.
-    right, level_column : Array
-        Right side and the column of t, (m,).
-    shift : float
-        1 to push the least eigenvalue up, 0 if t enters the equations alone.
-    cap : float
-        Largest t that is of use.
+    sizes : orders of the matrices G_i
+    equations : rows of A: column number -> coefficient
+    columns : (matrix, p, q) with p <= q of each entry h: G[p, q] = G[q, p] = h
+    right, level_column : (m,)
+    shift : 1 to push the least eigenvalue up, 0 if t enters the equations alone
 
     Returns
     -------
@@ -95,7 +90,7 @@ def maximise_level(
     objective[0] = -1.0
     solver = clarabel.DefaultSolver(sp.csc_matrix((count, count)), objective, A, b, cones, settings)
     found = solver.solve()
-    if not clarabel_status(found).is_usable:
+    if str(found.status) not in USABLE:
         return None
     x = np.asarray(found.x)
     matrices = [np.zeros((n, n)) for n in sizes]

@@ -12,6 +12,7 @@ from typing import final
 import numpy as np
 
 from ....models.types import Array
+from ...norms import ThrusterAxes
 from .mesh import Mesh
 from .propagate import Propagator
 from .scaling import ScaledProblem
@@ -102,7 +103,8 @@ class Shooting:
     @np.errstate(over="ignore", invalid="ignore")  # a wild trial may leave the numbers; it is refused
     def fly(self, control: Array) -> Rollout:
         """Trajectory of a control (one-sided thrust is clipped at zero)."""
-        control = self.scaled.problem.norm.clipped(control)
+        if isinstance(self.scaled.problem.norm, ThrusterAxes):
+            control = np.maximum(control, 0.0)
         torque = np.zeros((self.mesh.size, 3))
         torque[self.mesh.open] = control @ self.scaled.control_matrix.T
         states = self.propagator.states(torque)

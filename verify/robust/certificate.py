@@ -1,0 +1,106 @@
+"""A robust floor as a certificate: its flowpipes written out, for the stand-alone checker."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from fractions import Fraction
+from math import inf, nextafter
+from typing import Any
+
+from ...models.closed_loop import close_loop
+from ...models.uncertainty import Uncertainty
+from ..certificates.format import Certificate
+from ..certificates.schedule import schedule_data
+from ..filter.certificate import scaled_integers
+from ..filter.flowpipe import Flowpipe
+from ..flow.stepping import Step
+from ..lyapunov.forms import law_form
+from .answer import RobustFloor, RobustQuestion
+from .bodies import BodyBin, shape_error
+from .consequences import Consequences
+
+KIND = "robust-floor"
+
+
+def robust_certificate(floor: RobustFloor, found: Consequences) -> Certificate:
+    """Certificate of R >= floor, and of what follows for angle and rate."""
+    q = floor.question
+    claim: dict[str, Any] = {"floor": Fraction(floor.value)}
+    if floor.horizon is not None:
+        claim["horizon"] = floor.horizon
+    elif found.ratio is not None:
+        claim |= {"ratio": Fraction(found.ratio), "ratio_from": found.ratio_from}
+    if found.settling is not None:
+        claim["settling"] = {"time": Fraction(found.settling), "attitude": q.attitude, "rate": q.rate}
+    bounds = [(Fraction(0), found.largest_gap, found.largest_rate)]
+    if found.ultimate is not None:
+        u = found.ultimate
+        bounds.append((Fraction(u.start), u.gap, u.rate))
+    claim["bounds"] = [
+        {"from": start, "gap": Fraction(_above(gap)), "rate": Fraction(_above(rate))}
+        for start, gap, rate in bounds
+    ]
+    inertia = floor.parts[0][0].constants.inertia
+    witness = {
+        "lo": inertia.lo,
+        "hi": inertia.hi,
+        "shape": shape_error(q.body, q.uncertainty),
+        "bins": [_bin(part, pipe) for part, pipe in floor.parts],
+    }
+    return Certificate(KIND, robust_data(q), claim, witness)
+
+
+def _above(value: float) -> float:
+    """A float a little above: the checker rounds its roots by its own rule."""
+    return nextafter(value * (1 + 1e-11), inf)
+
+
+def robust_data(q: RobustQuestion) -> dict[str, Any]:
+    """What the claims speak about: the loop that the controller knows, and what it does not know."""
+    bounds = {
+        "max_angle_deg": q.max_angle_deg,
+        "max_rate": q.max_rate,
+        "max_weighted_rate": q.max_weighted_rate,
+    }
+    return {
+        "inertia": q.body.exact_inertia,
+        "law": law_form(close_loop(q.law)),
+        "parameters": q.law.parameters,
+        "initial": {state.name: state.initial for state in q.law.controller_states},
+        "schedule": schedule_data(q.schedule),
+        "initial_set": {name: value for name, value in bounds.items() if value is not None},
+        "uncertainty": uncertainty_data(q.uncertainty),
+    }
+
+
+def uncertainty_data(u: Uncertainty) -> dict[str, Any]:
+    """The channels that are not nominal."""
+    data = {name: getattr(u, name) for name in u.channels}
+    if "thrust_error" in data:
+        data["thrust_error_varies"] = u.thrust_error_varies
+    return data
+
+
+def _bin(part: BodyBin, pipe: Flowpipe) -> dict[str, Any]:
+    entry: dict[str, Any] = {
+        "scale": list(part.scale),
+        "s": Fraction(pipe.initial.s_high),
+        "y": Fraction(pipe.initial.y_high),
+        "steps": _steps(pipe.steps),
+    }
+    if pipe.tail is not None:
+        entry["tail"] = {"steps": _steps(pipe.tail.steps)}
+        if pipe.tail.ratios:
+            entry["tail"]["ratio"] = Fraction(max(pipe.tail.ratios.values()))
+    return entry
+
+
+def _steps(steps: Iterable[Step]) -> list[dict[str, Any]]:
+    return [
+        {
+            "until": step.stop,
+            "forms": list(step.modes),
+            "bounds": {name: scaled_integers(c) for name, c in step.controls.items()},
+        }
+        for step in steps
+    ]
