@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from fractions import Fraction
+from itertools import pairwise
 from pathlib import Path
 from typing import final
 
@@ -19,10 +20,12 @@ from .errors import ScenarioError, quote
 from .exact import exact_from_text
 from .files import read_text
 from .instants import FileClock, moment
-from .units import Heading, heading
+from .units import SPOKEN, TIME, Heading, core, heading
 
 _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
 _THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
+_SEPARATOR_LINE = re.compile(r'\ufeff?[ \t]*"?sep=(?P<separator>[;,\t])"?[ \t]*(?=[\r\n])', re.IGNORECASE)
+_SEPARATORS = {",": "commas", ";": "semicolons", "\t": "tabs"}
 _NUMBER_WORDS = frozenset({"nan", "inf", "infinity"})
 
 
@@ -33,14 +36,16 @@ class Column:
 
     Attributes
     ----------
-    names : what a header may call it, lower case, words joined by "_"
+    names : what a header may call it, as `core` leaves it
     units : factor of each unit that it may state; without one its numbers are taken as they are
     dated : whether it holds instants, which may be ISO 8601 times
+    doubtful : whether its name may also mean a duration; the rows must then tell
     """
 
     names: tuple[str, ...]
     units: Mapping[str, Fraction]
     dated: bool = False
+    doubtful: bool = False
 
 
 @final
@@ -58,12 +63,14 @@ class Row:
 class Table:
     """Rows of a file, and which of the forms asked for its header is (0 without a header).
 
-    `unzoned`: whether it holds dates without a zone.
+    `unzoned`: whether it holds dates without a zone. `doubtful`: whether its names may mean durations and its
+    rows told that they are instants.
     """
 
     rows: list[Row]
     form: int
     unzoned: bool = False
+    doubtful: bool = False
 
 
 @final
@@ -98,8 +105,8 @@ def read_rows(
         file: unreadable, empty, header only.
     """
     where = f"{key}: {path.name}"
-    text = read_text(path, where)
-    lines = _lines(text, where)
+    text, stated = _without_separator_line(read_text(path, where, wide=True))
+    lines, separator = _lines(text, where, stated)
     _refuse_units_in_comments(text, lines, forms, where)
     first = forms[0][0].names[0], forms[0][1].names[0]
     if not lines:
@@ -113,17 +120,37 @@ def read_rows(
     if not lines:
         raise ScenarioError(where, f"has a header and no rows: expected rows '{first[0]},{first[1]}'")
     dates = _Dates(clock if clock is not None else FileClock(), forms[form], factors)
-    rows = [_row(line, places, dates, width, f"{where} line {line.number}", first) for line in lines]
-    return Table(rows, form, dates.unzoned)
+    rows = [
+        _row(line, places, dates, width, f"{where} line {line.number}", first, separator) for line in lines
+    ]
+    doubtful = any(column.doubtful for column in forms[form])
+    if doubtful:
+        _require_instants(rows, where, forms)
+    return Table(rows, form, dates.unzoned, doubtful)
 
 
-def _lines(text: str, where: str) -> list[_Line]:
-    """Cells of every line that is neither empty nor a comment."""
+def _require_instants(rows: list[Row], where: str, forms: Sequence[tuple[Column, Column]]) -> None:
+    """Refuse numbers under names that may mean durations unless only instants can stand in such an order."""
+    in_order = all(a.second <= b.first for a, b in pairwise(rows)) and all(r.first < r.second for r in rows)
+    if len(rows) < 2 or not in_order:
+        raise ScenarioError(
+            f"{where} line {rows[0].line}",
+            "'on_time,off_time' may be instants or durations, and the rows do not tell: name the columns "
+            f"{_expected(forms)}",
+        )
+
+
+def _without_separator_line(text: str) -> tuple[str, str | None]:
+    """The text with the line "sep=;" that spreadsheets put first left empty, and the separator it states."""
+    found = _SEPARATOR_LINE.match(text)
+    return (text, None) if found is None else (text[found.end() :], found["separator"])
+
+
+def _lines(text: str, where: str, stated: str | None) -> tuple[list[_Line], str]:
+    """Cells of every line that is neither empty nor a comment, and what separates them."""
     kept = [(n, line.split("#", 1)[0]) for n, line in enumerate(text.lstrip("\ufeff").splitlines(), start=1)]
     kept = [(n, line) for n, line in kept if line.strip()]
-    if not kept:
-        return []
-    separator = next((s for s in (";", "\t") if s in kept[0][1]), ",")
+    separator = stated or next((s for s in (";", "\t") if kept and s in kept[0][1]), ",")
     lines = []
     for number, line in kept:
         try:
@@ -136,7 +163,7 @@ def _lines(text: str, where: str) -> list[_Line]:
     for one in lines:
         while len(one.cells) > 2 and not one.cells[-1]:  # a separator at the end of each line
             one.cells.pop()
-    return lines
+    return lines, separator
 
 
 def _with_points(lines: list[_Line], where: str) -> list[_Line]:
@@ -207,7 +234,7 @@ def _places(
     headings = [heading(cell, units) for cell in line.cells]
     complete = []
     for number, form in enumerate(forms):
-        found = [[i for i, h in enumerate(headings) if h.name in column.names] for column in form]
+        found = [[i for i, h in enumerate(headings) if core(h.name) in column.names] for column in form]
         for several in found:
             if len(several) > 1:
                 names = " and ".join(quote(line.cells[i]) for i in several)
@@ -230,24 +257,39 @@ def _places(
 
 
 def _no_columns(line: _Line, headings: list[Heading], forms: Sequence[tuple[Column, Column]]) -> str:
-    expected = ", ".join(f"'{a.names[0]},{b.names[0]}'" for a, b in forms)
-    hint = ""
-    known = [name for form in forms for column in form for name in column.names if len(name) > 1]
-    for found in headings:
-        near = get_close_matches(found.name, known, n=1, cutoff=0.5)
-        if near and found.name not in known:
-            hint = f" (did you mean {quote(near[0])} for {quote(found.name)}?)"
-            break
-    if any("duration" in h.name and h.name not in known for h in headings):
-        hint = " (a duration needs the instant at which it begins: on,duration)"
-    return f"expected the header {expected}, received {quote(','.join(line.cells))}{hint}"
+    received = quote(",".join(line.cells))
+    return f"expected the header {_expected(forms)}, received {received}{_hint(line, headings, forms)}"
+
+
+def _expected(forms: Sequence[tuple[Column, Column]]) -> str:
+    plain = [(a, b) for a, b in forms if not (a.doubtful or b.doubtful)]
+    return " or ".join(f"'{a.names[0]},{b.names[0]}'" for a, b in plain)
+
+
+def _hint(line: _Line, headings: list[Heading], forms: Sequence[tuple[Column, Column]]) -> str:
+    """What to do about the first name that is not known, if that can be told."""
+    known = [name for form in forms for column in form for name in column.names]
+    if any("duration" in h.name and core(h.name) not in known for h in headings):
+        return " (a duration needs the instant at which it begins: on,duration)"
+    for cell, found in zip(line.cells, headings, strict=True):
+        name = core(found.name)
+        if name in known:
+            continue
+        first, _, rest = name.partition("_")
+        if first in known and rest:
+            return f" ({quote(cell)} does not end in a unit that is known: {SPOKEN})"
+        whole = [k for k in known if len(k) > 1 and "_" not in k and k not in {"from", "to"}]
+        near = get_close_matches(name, whole, n=1, cutoff=0.7)
+        if near:
+            return f" (did you mean {quote(near[0])} for {quote(cell)}?)"
+    return ""
 
 
 def _factor(found: Heading, column: Column, at: str) -> Fraction:
     if found.unit is None:
         return Fraction(1)
     if found.unit not in column.units:
-        known = ", ".join(dict.fromkeys(column.units))
+        known = SPOKEN if column.dated or column.units is TIME else ", ".join(dict.fromkeys(column.units))
         raise ScenarioError(at, f"the unit {quote(found.unit)} of {quote(found.name)} is none of {known}")
     return column.units[found.unit]
 
@@ -291,12 +333,13 @@ class _Dates:
 
 
 def _row(
-    line: _Line, places: tuple[int, int], dates: _Dates, width: int, at: str, names: tuple[str, str]
-) -> Row:
+    line: _Line, places: tuple[int, int], dates: _Dates, width: int, at: str, names: tuple[str, str],
+    separator: str,
+) -> Row:  # fmt: skip
     if not max(places) < len(line.cells) <= width:  # more cells than the header has: a decimal comma, say
-        raise ScenarioError(
-            at, f"expected two numbers, '{names[0]},{names[1]}', received {quote(','.join(line.cells))}"
-        )
+        received, few = quote(separator.join(line.cells)), len(line.cells) <= max(places)
+        hint = f" (cells are separated by {_SEPARATORS[separator]} here)" if few else ""
+        raise ScenarioError(at, f"expected two numbers, '{names[0]},{names[1]}', received {received}{hint}")
     try:
         numbers = dates.numbers((line.cells[places[0]], line.cells[places[1]]))
     except ValueError as error:

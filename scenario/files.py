@@ -9,12 +9,13 @@ from pathlib import Path
 from .errors import ScenarioError
 
 MEGABYTE = 1024 * 1024
+UTF16_MARKS, UTF32_MARKS = (b"\xff\xfe", b"\xfe\xff"), (b"\xff\xfe\x00\x00", b"\x00\x00\xfe\xff")
 MAX_FILE = 10 * MEGABYTE
 """Bytes a scenario, CSV or law file may have: 10 MB, checked before it is read."""
 
 
-def read_text(path: Path, where: str) -> str:
-    """Return the text of a file.
+def read_text(path: Path, where: str, *, wide: bool = False) -> str:
+    """Return the text of a file: UTF-8, or UTF-16 with its byte order mark if `wide`.
 
     Parameters
     ----------
@@ -22,6 +23,8 @@ def read_text(path: Path, where: str) -> str:
         The file.
     where : str
         How messages name it: the file the user gave, or the key that names it.
+    wide : bool
+        Whether UTF-16 is read too, as spreadsheets on Windows write it.
 
     Raises
     ------
@@ -40,10 +43,12 @@ def read_text(path: Path, where: str) -> str:
         problem = f"cannot be read: {reason}"
     if problem is not None:
         raise ScenarioError(where, problem)
+    utf16 = raw.startswith(UTF16_MARKS) and not raw.startswith(UTF32_MARKS)
     try:
-        return raw.decode("utf-8-sig")
+        return raw.decode("utf-16" if wide and utf16 else "utf-8-sig")
     except UnicodeDecodeError as error:
-        raise ScenarioError(where, f"is not UTF-8 text (byte {error.start + 1})") from None
+        kind = "UTF-16 text" if utf16 else f"not UTF-8 text (byte {error.start + 1})"
+        raise ScenarioError(where, f"is {kind}: save it as UTF-8") from None
 
 
 def _refusal(status: os.stat_result) -> str | None:

@@ -19,15 +19,17 @@ from .units import TIME
 MAX_COUNT = 200_000
 """Windows that `count` may ask for."""
 _OPENS = Column(
-    ("on", "start", "begin", "open", "opens", "t_on", "start_time", "window_start"), TIME, dated=True
+    ("on", "start", "begin", "begins", "open", "opens", "opening", "from", "tstart"), TIME, dated=True
 )
 _CLOSES = Column(
-    ("off", "stop", "end", "close", "closes", "t_off", "stop_time", "end_time", "window_end"),
+    ("off", "stop", "end", "ends", "finish", "close", "closes", "closing", "to", "tstop", "tend"),
     TIME,
     dated=True,
 )
-_LASTS = Column(("duration", "length", "width"), TIME)
-WINDOW_COLUMNS = ((_OPENS, _CLOSES), (_OPENS, _LASTS))
+_LASTS = Column(("duration", "length", "width", "on_time"), TIME)
+_ON_TIMES = Column(("on_time",), TIME, dated=True, doubtful=True)
+_OFF_TIMES = Column(("off_time",), TIME, dated=True, doubtful=True)
+WINDOW_COLUMNS = ((_OPENS, _CLOSES), (_OPENS, _LASTS), (_ON_TIMES, _OFF_TIMES))
 """What a CSV of windows may hold: when each opens, and when it closes or how long it lasts."""
 Locate = Callable[[int], str]
 """From the position of a window (from 0) to the words by which messages name it."""
@@ -171,9 +173,19 @@ def _windows(
         rows, by_length = table_read.rows, table_read.form == 1
         lines = [row.line for row in rows]
         windows = [Window(row.first, row.second + (row.first if by_length else 0)) for row in rows]
-        unzoned = (f"{key}: {path.name}: {READ_AS_UTC}",) if table_read.unzoned else ()
+        told = (READ_AS_UTC,) if table_read.unzoned else ()
+        if table_read.doubtful:
+            told = (
+                *told,
+                "its times on and off are read as instants (as durations they would not be in order)",
+            )
         source = f"{path.name}, {len(rows)} windows"
-        return windows, lambda i: f"{key}: {path.name} line {lines[i]}", source, unzoned
+        return (
+            windows,
+            lambda i: f"{key}: {path.name} line {lines[i]}",
+            source,
+            tuple(f"{key}: {path.name}: {words}" for words in told),
+        )
     key = document.where("schedule.on_time")
     if table.period is None:
         raise ScenarioError(document.where("schedule.period"), "required with on_time, but missing")

@@ -29,6 +29,14 @@ THRUST = dict.fromkeys(
 )
 """Units that thrust may be given in: only its ratio to full thrust, in the same unit, counts."""
 
+SPOKEN = "ns, us, ms, s, min, h, d"
+"""The units of time as messages name them."""
+SUBJECTS = frozenset({"window", "burn", "firing", "fire", "valve", "thruster", "pulse", "jet"})
+"""Words of a column's name that say whose instants it holds."""
+INSTANTS = frozenset({"time", "t", "at", "instant", "timestamp", "date", "datetime", "utc"})
+"""Words of a column's name that say that it holds instants."""
+
+_TAIL = re.compile(r"(?<=[a-z])[A-Z][a-z]*$")
 _BRACKETED = re.compile(r"(?P<name>[^\[\](){}/]*?)\s*[\[({/]\s*(?P<unit>[^\[\](){}]*?)\s*[\])}]?")
 
 
@@ -42,7 +50,7 @@ class Heading:
 
 
 def heading(text: str, units: frozenset[str]) -> Heading:
-    """Split "on [ms]", "on (ms)", "on/ms", "on_ms", "on ms" into name and unit.
+    """Split "on [ms]", "on (in ms)", "on/ms", "on_ms", "on.ms", "onMs", "on ms" into name and unit.
 
     Parameters
     ----------
@@ -52,14 +60,30 @@ def heading(text: str, units: frozenset[str]) -> Heading:
     cell = text.strip()
     found = _BRACKETED.fullmatch(cell)
     if found and found["name"]:
-        return Heading(_plain(found["name"]), found["unit"])
-    words = re.split(r"[\s_\-]+", cell)
+        return Heading(_plain(found["name"]), re.sub(r"^in\s+", "", found["unit"]))
+    words = re.split(r"[\s_\-.]+", cell)
     for count in (2, 1):
         unit = " ".join(words[-count:])
         if len(words) > count and unit in units:
             return Heading(_plain(" ".join(words[:-count])), unit)
+    tail = _TAIL.search(cell)
+    if tail and (unit := tail[0].lower()) in units:
+        return Heading(_plain(cell[: tail.start()]), unit)
     return Heading(_plain(cell), None)
 
 
+def core(name: str) -> str:
+    """What a column's name says beside its subject and that it is an instant: "valve_open_time" is "open".
+
+    Of "on_time" and "off_time" the time stays: it may be a duration.
+    """
+    words = name.split("_")
+    kept = [word for word in words if word not in SUBJECTS | INSTANTS]
+    if kept in (["on"], ["off"]) and "time" in words:
+        return f"{kept[0]}_time"
+    return "_".join(kept) or name
+
+
 def _plain(name: str) -> str:
-    return re.sub(r"[\s_\-.]+", "_", name.strip().lower()).strip("_")
+    apart = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name.strip())
+    return re.sub(r"[\s_\-.]+", "_", apart.lower()).strip("_")

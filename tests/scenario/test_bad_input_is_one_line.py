@@ -224,13 +224,14 @@ BAD_CSV = {
     "empty": ("", ": is empty: expected rows 'on,off'"),
     "comments only": ("# nothing\n\n", ": is empty: expected rows 'on,off'"),
     "header only": ("on,off\n", ": has a header and no rows: expected rows 'on,off'"),
-    "other columns": ("a,b\n3,0\n", " line 1: expected the header 'on,off', 'on,duration', received 'a,b'"),
+    "other columns": ("a,b\n3,0\n", " line 1: expected the header 'on,off' or 'on,duration', received 'a,b'"),
     "not a number": ("0,3\n8,x\n", " line 2: expected a number, received 'x'"),
     "a hole": ("0,3\n8,\n", " line 2: expected a number, received ''"),
     "nan": ("0,3\nnan,9\n", " line 2: expected a finite number, received 'nan'"),
     "inf": ("0,inf\n", " line 1: expected a finite number, received 'inf'"),
     "three columns": ("0,3,4\n", " line 1: expected two numbers, 'on,off', received '0,3,4'"),
-    "spaces": ("0 3\n", " line 1: expected two numbers, 'on,off', received '0 3'"),
+    "spaces": ("0 3\n", " line 1: expected two numbers, 'on,off', received '0 3' (cells are separated by "
+              "commas here)"),
     "huge": ("0,1e9999\n", " line 1: expected 0 or a number between 1e-30 and 1e30 with at most 60 digits, "
              "received 1e+9999"),
 }  # fmt: skip
@@ -245,7 +246,7 @@ def test_bad_csv(workshop, text, message):
 def test_csv_that_is_no_text(workshop):
     (workshop.folder / "w.csv").write_bytes(b"on,off\n0,3\xff\n")
     complaint = workshop.complaint(schedule='csv = "w.csv"')
-    assert complaint == "scenario.toml: schedule.csv: w.csv: is not UTF-8 text (byte 11)"
+    assert complaint == "scenario.toml: schedule.csv: w.csv: is not UTF-8 text (byte 11): save it as UTF-8"
 
 
 def test_csv_that_is_missing_or_a_directory_or_huge(workshop):
@@ -278,7 +279,7 @@ def test_scenario_file_that_is_no_scenario(tmp_path):
     assert complaint(big) == "big.toml: has 100.0 MB: files over 10 MB are refused"
     latin = tmp_path / "latin.toml"
     latin.write_bytes(b'name = "\xe9"')
-    assert complaint(latin) == "latin.toml: is not UTF-8 text (byte 9)"
+    assert complaint(latin) == "latin.toml: is not UTF-8 text (byte 9): save it as UTF-8"
     broken = tmp_path / "broken.toml"
     broken.write_text("name = ")
     assert complaint(broken) == "broken.toml: is not valid TOML: Invalid value (at end of document)"

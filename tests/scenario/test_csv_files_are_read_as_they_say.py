@@ -46,19 +46,43 @@ def read(tmp_path):
         "\ufeffon,off\r\n0.01,3.21\r\n\r\n8.01,11.21\r\n",
         "# windows\non,off  # s\n0.01,3.21,\n8.01,11.21,\n",
         "Window Start [s],Window End [s]\n0.01,3.21\n8.01,11.21\n",
+        "onMs,offMs\n10,3210\n8010,11210\n",
+        "startTime [ms],endTime [ms]\n10,3210\n8010,11210\n",
+        "on (in ms),off (in ms)\n10,3210\n8010,11210\n",
+        "on.ms,off.ms\n10,3210\n8010,11210\n",
+        "valve open time,valve close time\n0.01,3.21\n8.01,11.21\n",
+        "burn_start,burn_end\n0.01,3.21\n8.01,11.21\n",
+        "on_time,off_time\n0.01,3.21\n8.01,11.21\n",
+        "Time On (s);Time Off (s)\n0.01;3.21\n8.01;11.21\n",
+        "start,on_time\n0.01,3.2\n8.01,3.2\n",
+        "sep=,\non,off\n0.01,3.21\n8.01,11.21\n",
+        '"sep=;"\r\non;off\r\n0.01;3.21\r\n8.01;11.21\r\n',
     ],
 )
 def test_what_spreadsheets_write_is_read_exactly(read, text):
     assert read(text) == WINDOWS
 
 
+def test_utf_16_is_read_by_its_mark_and_other_encodings_are_refused(read):
+    text = "on [µs],off [µs]\n10000,3210000\n8010000,11210000\n"
+    assert read(text, encoding="utf-16") == read(text, encoding="utf-8-sig") == WINDOWS
+    for encoding in ("latin-1", "utf-32"):
+        with pytest.raises(ScenarioError, match="save it as UTF-8"):
+            read(text, encoding=encoding)
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [
         ("on_duration,off_duration\n0.01,3.2\n", "a duration needs the instant"),
-        ("on_time,off_time\n0.01,3.2\n", "expected the header"),
-        ("on_ticks,off_ticks\n10,3210\n", "did you mean"),
-        ("on [ticks],off [ticks]\n10,3210\n", "the unit 'ticks' of 'on' is none of s"),
+        ("on_time,off_time\n0.01,3.2\n", "may be instants or durations"),
+        ("on_time,off_time\n3.2,4.8\n3.2,4.8\n", "may be instants or durations"),
+        ("on_time_ms,off_time\n10,3210\n8010,11210\n", "only one of"),
+        ("on_ticks,off_ticks\n10,3210\n", "'on_ticks' does not end in a unit that is known: ns"),
+        ("onMS,offMS\n10,3210\n", "'onMS' does not end in a unit"),
+        ("on Ms,off Ms\n10,3210\n", "'on Ms' does not end in a unit"),
+        ("on;off\n0.01,3.21\n", "received '0.01,3.21' (cells are separated by semicolons here)"),
+        ("on [ticks],off [ticks]\n10,3210\n", "the unit 'ticks' of 'on' is none of ns, us, ms, s"),
         ("on,onn\n1,2\n", "did you mean 'on' for 'onn'"),
         ("on,off,duration\n1,2,1\n", "in more than one way"),
         ("on,start,off\n1,1,2\n", "in more than one way"),
