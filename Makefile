@@ -8,12 +8,13 @@ OUT ?= report
 export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 
-.PHONY: help venv install test quick lint report bench soak clean
+.PHONY: help venv install dev test quick lint report bench soak clean
 help:
 	@echo "make report   check the paper's scenario and write its pages to $(OUT)/"
 	@echo "make test     every test but the soak"
 	@echo "make quick    the tests that take seconds"
-	@echo "make lint     ruff, mypy --strict, import contracts"
+	@echo "make dev      an install that follows the sources, and the hooks that lint before a commit"
+	@echo "make lint     ruff, mypy --strict, import contracts, dead code, spelling"
 	@echo "make bench    benchmarks, with their competitors where installed"
 	@echo "make soak     hours of random attack on what is proved"
 	@echo "make clean    remove what these made"
@@ -37,14 +38,24 @@ install: venv
 # together (what a module's fixtures make is made once or twice), and neither worker waits for a long file.
 TWO := -n 2 --dist worksteal
 
+# Follows the sources: a changed line needs no reinstall, a new file does. `make test` puts the plain install back.
+dev: $(VENV)/lint-ready
+	$(BIN)/python -m pip install --quiet "pre-commit>=3.5"
+	rm -rf build *.egg-info
+	$(BIN)/python -m pip install --quiet --no-deps -e . --config-settings editable_mode=strict
+	if [ -e .git ]; then $(BIN)/pre-commit install; fi
+
+# Fails too if a function that claims rest on is reached by no test.
 test: install
-	$(BIN)/pytest tests -m "not soak" $(TWO)
+	rm -rf $(VENV)/reached
+	INTERMIT_REACHED=$(abspath $(VENV))/reached $(BIN)/pytest tests -m "not soak" $(TWO)
+	$(BIN)/python tests/reached.py $(VENV)/reached
 
 quick: install
 	$(BIN)/pytest tests -m "not soak and not slow" $(TWO)
 
 $(VENV)/lint-ready: $(VENV)/ready
-	$(BIN)/python -m pip install --quiet "ruff>=0.6" "mypy>=1.10" "import-linter>=2.6"
+	$(BIN)/python -m pip install --quiet "ruff>=0.6" "mypy>=1.10" "import-linter>=2.6" "vulture>=2.11" "codespell>=2.3"
 	touch $@
 
 lint: install $(VENV)/lint-ready
@@ -52,6 +63,8 @@ lint: install $(VENV)/lint-ready
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy --config-file pyproject.toml -p intermit
 	$(BIN)/lint-imports --config pyproject.toml
+	$(BIN)/vulture
+	$(BIN)/codespell
 
 report: install
 	$(BIN)/intermit report $(SCENARIO) -o $(OUT)

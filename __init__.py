@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from .models.laws import Law as Law
     from .models.laws import PersistenceFilter as PersistenceFilter
     from .models.laws import QuaternionPD as QuaternionPD
+    from .models.norms import EUCLIDEAN as EUCLIDEAN
+    from .models.norms import LARGEST_COMPONENT as LARGEST_COMPONENT
     from .models.rigid_body import RigidBody as RigidBody
     from .models.schedule import Schedule as Schedule
     from .models.schedule import Window as Window
@@ -38,7 +40,9 @@ _DOOR = ("bound", "certify", "check", "compare", "load", "optimum", "recheck", "
 """What the command line does, each as one call."""
 _EXPORTS = {
     "AdaptiveScaling": ".models.laws",
+    "EUCLIDEAN": ".models.norms",
     "InputError": ".errors",
+    "LARGEST_COMPONENT": ".models.norms",
     "Law": ".models.laws",
     "PersistenceFilter": ".models.laws",
     "QuaternionPD": ".models.laws",

@@ -135,13 +135,13 @@ def ensembles(scale: float) -> tuple[Series, Series]:
 
 def optima() -> Series:
     """Minimum-peak transfers through more and more windows, built and solved."""
-    from intermit.optim.norms import Euclidean
+    from intermit.models.norms import EUCLIDEAN
     from intermit.optim.peak import SequentialConvex
     from optimum import ours
 
     points = []
     for count in (4, 7, 14, 28, 56):
-        seconds, _ = ours(SequentialConvex(), Euclidean(), f"{8 * (count - 1) + 3.22:.2f}")
+        seconds, _ = ours(SequentialConvex(), EUCLIDEAN, f"{8 * (count - 1) + 3.22:.2f}")
         points.append((count, seconds))
     return {"convex programs, Euclidean": points}
 

@@ -29,9 +29,9 @@ import clarabel  # noqa: F401  imports are not part of the times
 import numpy as np
 import scipy.integrate
 import scipy.sparse  # noqa: F401
+from intermit.models.norms import EUCLIDEAN, LARGEST_COMPONENT, Norm
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import Hermite, Window, build_schedule
-from intermit.optim.norms import Euclidean, LargestComponent, Norm
 from intermit.optim.peak import NonlinearProgram, SequentialConvex, TorqueHistory, replay
 from intermit.optim.peak.search import guess
 from intermit.optim.peak.solvers import curvature
@@ -124,7 +124,7 @@ def opti(norm: Norm) -> tuple[float, np.ndarray]:
         torque = U[:, used] if is_open else ca.DM.zeros(3)
         used += is_open
         program.subject_to(X[:, k + 1] == steps[is_open](X[:, k], torque, points[k + 1] - points[k]))
-        if is_open and isinstance(norm, Euclidean):
+        if is_open and norm.is_ball:
             program.subject_to(ca.sumsqr(torque) <= p**2)
         elif is_open:
             program.subject_to(program.bounded(-p, torque, p))
@@ -160,7 +160,7 @@ def rockit(norm: Norm) -> tuple[float, np.ndarray]:
         u = stage.control(3) if piece.shape else ca.DM.zeros(3)
         stage.set_der(x, rates(x, u / 1000))
         stage.set_der(p, 0)
-        if piece.shape and isinstance(norm, Euclidean):
+        if piece.shape and norm.is_ball:
             stage.subject_to(ca.sumsqr(u) <= p**2)
         elif piece.shape:
             for i in range(3):
@@ -209,7 +209,7 @@ def main() -> None:
         del tools["rockit-meco"]
         print("rockit-meco: skipped, it is not installed\n")
     print(f"{'':30} {'norm':18} {'cpu s':>8} {'peak, N m':>13} {'end error':>10}")
-    for norm in (LargestComponent(), Euclidean()):
+    for norm in (LARGEST_COMPONENT, EUCLIDEAN):
         times: dict[str, list[float]] = {name: [] for name in tools}
         controls: dict[str, np.ndarray] = {}
         for _ in range(rounds):

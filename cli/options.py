@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal, final
+from typing import TYPE_CHECKING, Annotated, final
 
 import typer
 
 from ..errors import InputError
 from ..study.options import TuneOptions, help_of
+
+if TYPE_CHECKING:
+    from ..models.norms import Norm
 
 
 @final
@@ -44,19 +47,16 @@ JsonFile = Annotated[
 PeakNorm = Annotated[str | None, typer.Option(metavar="NORM", help=help_of(TuneOptions, "norm"))]
 
 
-def norm_of(word: str | None) -> Literal["component", "euclidean"] | None:
-    """Check the word given for a norm of the torque.
+def norm_of(word: str | None) -> Norm | None:
+    """The norm of the torque that a word names.
 
     Raises
     ------
     InputError
         If it is not one.
     """
-    norms: dict[str | None, Literal["component", "euclidean"] | None] = {
-        None: None,
-        "component": "component",
-        "euclidean": "euclidean",
-    }
-    if word in norms:
-        return norms[word]
-    raise InputError(f"--peak-norm: expected component or euclidean, received {word!r}")
+    from ..models.norms import NORMS
+
+    if word is None or word in NORMS:
+        return None if word is None else NORMS[word]
+    raise InputError(f"--peak-norm: expected {' or '.join(NORMS)}, received {word!r}")

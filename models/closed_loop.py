@@ -10,37 +10,34 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields, is_dataclass
 from fractions import Fraction
 from functools import lru_cache
-from typing import Any, Literal, final
+from typing import Any, final
 
 import casadi as ca
 import numpy as np
 
 from .laws import Control, Expression, Law, PlantSymbols, TimeSymbols
 from .laws.scaled import augmented_rate
+from .norms import LARGEST_COMPONENT, Norm
 from .rigid_body import RigidBody, attitude_rate, momentum_rate
 from .types import Array
 
 PLANT_STATES = ("b0", "b1", "b2", "b3", "w1", "w2", "w3")
 INERTIA_NAMES = ("J11", "J12", "J13", "J22", "J23", "J33")
 INERTIA_ENTRIES = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
-
 """Positions of those names in J."""
 
 
 @final
 @dataclass(frozen=True)
 class Saturation:
-    """A limit on the applied torque, N m: each component clipped, or the Euclidean norm scaled back."""
+    """A limit on the applied torque, N m, block by block: components clipped, lengths scaled back."""
 
     limit: Fraction
-    norm: Literal["component", "euclidean"] = "component"
+    norm: Norm = LARGEST_COMPONENT
 
     def apply(self, torque: Expression) -> Expression:
         """Limited torque, as an expression."""
-        limit = float(self.limit)
-        if self.norm == "component":
-            return ca.fmin(ca.fmax(torque, -limit), limit)
-        return torque * ca.fmin(1, limit / ca.fmax(ca.norm_2(torque), np.finfo(float).tiny))
+        return self.norm.limited(torque, float(self.limit))
 
 
 @final

@@ -51,10 +51,11 @@ def local_rates(
 
     Parameters
     ----------
-    law, body, schedule : what is analysed; the schedule must be periodic
+    law, body, schedule : Law, RigidBody, Schedule
+        What is analysed; the schedule must be periodic.
     controller_states : mapping, optional
-        Where the search for the controller's periodic motion starts: a state that rests at the
-        target (the adaptive gain) keeps this value. The law's initial values unless given.
+        Where the search for the controller's periodic motion starts: a state that rests at the target (the
+        adaptive gain) keeps this value. The law's initial values unless given.
 
     Raises
     ------

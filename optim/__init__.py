@@ -9,20 +9,20 @@ from importlib import import_module
 from typing import Any
 
 _EXPORTS = {
-    "Euclidean": ".norms",
-    "LargestComponent": ".norms",
+    "EUCLIDEAN": "..models.norms",
+    "LARGEST_COMPONENT": "..models.norms",
     "MultiStart": ".peak",
     "NonlinearProgram": ".peak",
     "PeakAnswer": ".peak",
     "Refinement": ".peak",
     "SequentialConvex": ".peak",
     "Terminal": ".problem",
-    "ThrusterAxes": ".norms",
     "TransferProblem": ".problem",
     "WindowProfile": ".problem",
     "minimum_impulse": ".peak",
     "minimum_peak": ".peak",
     "minimum_time": ".peak",
+    "thrusters": "..models.norms",
 }
 
 __all__ = sorted(_EXPORTS)

@@ -17,12 +17,12 @@ from typing import final
 
 import numpy as np
 
+from ..models.norms import EUCLIDEAN, Norm
 from ..models.rigid_body import RigidBody
 from ..models.schedule import PiecewisePolynomial, Schedule
 from ..models.schedule.piecewise import Piece
 from ..models.schedule.polynomial import ZERO, compose_affine, polynomial
 from ..models.types import Array
-from .norms import Euclidean, Norm
 
 Quaternion = tuple[Fraction, Fraction, Fraction, Fraction]
 Vector = tuple[Fraction, Fraction, Fraction]
@@ -96,7 +96,7 @@ class TransferProblem:
     window: PiecewisePolynomial
     attitude: Quaternion
     rate: Vector = (Fraction(0), Fraction(0), Fraction(0))
-    norm: Norm = field(default_factory=Euclidean)
+    norm: Norm = EUCLIDEAN
     terminal: Terminal = field(default_factory=Terminal)
     signs: tuple[int, ...] = (1, -1)
 
@@ -137,7 +137,7 @@ class TransferProblem:
             window=window_profile(schedule, Fraction(horizon), profile),
             attitude=(q[0], q[1], q[2], q[3]),
             rate=(w[0], w[1], w[2]),
-            norm=norm or Euclidean(),
+            norm=norm or EUCLIDEAN,
             terminal=terminal or Terminal(),
         )
 

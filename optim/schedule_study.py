@@ -9,6 +9,7 @@ from fractions import Fraction
 from typing import final
 
 from ..models.laws import Law
+from ..models.norms import Norm
 from ..models.schedule import Hermite, Shape, Window, build_schedule
 from ..models.simulation import SimulationError
 from .comparison.measure import Task, run_law
@@ -78,7 +79,7 @@ def study_schedules(
     duty_cycles: Sequence[Fraction],
     *,
     time: Fraction,
-    norm: str,
+    norm: Norm,
     floor: FloorOf,
     family: ScheduleFamily | None = None,
     executor: Executor | None = None,
@@ -87,8 +88,24 @@ def study_schedules(
 
     Parameters
     ----------
-    time : transfer time of the optimum, s, the same for all cases
-    floor : certified floor of R, a function that can be pickled
+    law : Law
+        The law that is run through every schedule.
+    task : Task
+        Body, start and tolerances; its own schedule is replaced by each case's.
+    periods : Sequence[Fraction]
+        Periods, s, each > 0.
+    duty_cycles : Sequence[Fraction]
+        Window time over period, each in (0, 1).
+    time : Fraction
+        Transfer time of the optimum, s, the same for all cases.
+    norm : str
+        Of the torque, "component" or "euclidean".
+    floor : FloorOf
+        Certified floor of R, a function that can be pickled.
+    family : ScheduleFamily, optional
+        How a period and a duty cycle make a schedule; its defaults without one.
+    executor : Executor, optional
+        Workers that share the cases; None does them here.
     """
     family = family if family is not None else ScheduleFamily()
     jobs = [
@@ -102,7 +119,7 @@ def study_schedules(
 
 
 def study_case(
-    law: Law, task: Task, period: Fraction, on_time: Fraction, time: Fraction, norm: str, floor: FloorOf
+    law: Law, task: Task, period: Fraction, on_time: Fraction, time: Fraction, norm: Norm, floor: FloorOf
 ) -> ScheduleCase:
     """One case of the study."""
     settling, peak = None, None
@@ -142,7 +159,7 @@ def least_on_time(
     *,
     torque_limit: Fraction,
     time: Fraction,
-    norm: str,
+    norm: Norm,
     floor: FloorOf,
     family: ScheduleFamily | None = None,
     resolution: Fraction = Fraction(1, 100),

@@ -49,10 +49,6 @@ class LawChoice:
     class_name: str | None
     where: str
 
-    def parameter(self, name: str) -> Fraction:
-        """Exact value of a parameter."""
-        return dict(self.parameters)[name]
-
     def described(self) -> Mapping[str, Parameter]:
         """What the law says of its parameters: unit, bound, meaning (loads a user's file)."""
         return law_class(self).described()

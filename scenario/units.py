@@ -54,8 +54,10 @@ def heading(text: str, units: frozenset[str]) -> Heading:
 
     Parameters
     ----------
-    text : the cell of the header
-    units : the units that may follow a name without brackets; in brackets any word is a unit
+    text : str
+        The cell of the header.
+    units : frozenset[str]
+        The units that may follow a name without brackets; in brackets any word is a unit.
     """
     cell = text.strip()
     found = _BRACKETED.fullmatch(cell)

@@ -286,11 +286,12 @@ def tune(
     InputError
         If a value cannot be taken, there is no such law, or no settling time.
     """
+    from ..models.norms import NORMS
     from .tune.result import TuningStudy
     from .tune.run import run_tuning
 
     time = None if settle is None else _positive("settle", settle, "s")
-    chosen = None if norm is None else _one_of("norm", norm, ("component", "euclidean"))
+    chosen = None if norm is None else NORMS[_one_of("norm", norm, tuple(NORMS))]
     if seed is not None:
         _at_least("seed", seed, 0)
     scenario = _scenario(source)

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..models.closed_loop import Saturation
 from ..models.laws import Law
+from ..models.norms import LARGEST_COMPONENT, NORMS, Norm
 from ..models.schedule.variants import starting_at
 from ..models.simulation import (
     Figures,
@@ -69,22 +70,21 @@ def seen_in(scenario: Scenario, run: Run | None) -> RunFigures:
     if run is None or run.figures is None or run.trajectory is None:
         return RunFigures()
     torque, floor = run.figures.torque, run.figures.filter_minimum
-    euclidean = scenario.limits is not None and scenario.limits.norm == "euclidean"
-    peak = torque.peak_euclidean if euclidean else torque.peak_component
+    norm = LARGEST_COMPONENT if scenario.limits is None else NORMS[scenario.limits.norm]
+    peak = torque.peak[norm]
     over = None
     if scenario.limits is not None and not run.trajectory.is_saturated_model:
-        over = _excess_instant(run.trajectory, float(scenario.limits.torque), peak.value, euclidean=euclidean)
+        over = _excess_instant(run.trajectory, norm, float(scenario.limits.torque), peak.value)
         over = None if over is None else over + float(run.origin)
     return RunFigures(floor.value if floor is not None else None, peak.value, over)
 
 
-def _excess_instant(trajectory: Trajectory, limit: float, peak: float, *, euclidean: bool) -> float | None:
+def _excess_instant(trajectory: Trajectory, norm: Norm, limit: float, peak: float) -> float | None:
     """First instant at which the torque has gone a tenth of the way from the limit to its peak, s."""
     if not peak > limit * (1 + 1e-6):
         return None
     times = trajectory.grid()
-    torque = trajectory.signals(times).applied_torque
-    size = np.linalg.norm(torque, axis=0) if euclidean else np.abs(torque).max(axis=0)
+    size = norm.peak(trajectory.signals(times).applied_torque.T)
     above = np.flatnonzero(size > limit + 0.1 * (peak - limit))
     return float(times[above[0]]) if above.size else None
 
@@ -93,7 +93,7 @@ def run_law(scenario: Scenario, law: Law) -> Run:
     """Simulate a law from the scenario's initial state to its horizon."""
     saturation = None
     if scenario.simulation.saturate and scenario.limits is not None:
-        saturation = Saturation(scenario.limits.torque, scenario.limits.norm)
+        saturation = Saturation(scenario.limits.torque, NORMS[scenario.limits.norm])
     lead = idle_lead(law, scenario.schedule, scenario.initial.rate)
     if lead >= scenario.horizon:
         lead = Fraction(0)
@@ -125,17 +125,16 @@ def metrics(run: Run) -> list[dict[str, Any]]:
     else:
         out.append(_figure("settling_time", settling + float(run.origin), "s", "settling time"))
     out += [
-        _figure("peak_torque_component", torque.peak_component.value, "N m", "peak |g u|, largest component"),
-        _figure("peak_torque_euclidean", torque.peak_euclidean.value, "N m", "peak |g u|, Euclidean"),
-        _figure(
-            "peak_command_component", torque.peak_commanded_component.value, "N m",
-            "peak |u|, largest component",
+        *(
+            _figure(f"peak_torque_{norm.key}", peak.value, norm.unit, f"peak |g u|, {norm.name}")
+            for norm, peak in torque.peak.items()
         ),
-        _figure(
-            "peak_command_euclidean", torque.peak_commanded_euclidean.value, "N m", "peak |u|, Euclidean"
+        *(
+            _figure(f"peak_command_{norm.key}", peak.value, norm.unit, f"peak |u|, {norm.name}")
+            for norm, peak in torque.peak_commanded.items()
         ),
         _figure("impulse", torque.impulse, "N m s", "impulse, integral of |g u|"),
-    ]  # fmt: skip
+    ]
     if floor is not None:
         out.append(_figure("least_filter_state", floor.value, "s", "least R along the run"))
     for name, label, value in (

@@ -9,6 +9,7 @@ import numpy as np
 from intermit.models.closed_loop import body_values, close_loop
 from intermit.models.ensemble import MetricOptions, simulate_ensemble
 from intermit.models.laws import AdaptiveScaling, PersistenceFilter
+from intermit.models.norms import EUCLIDEAN
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import Hermite, Ramps, Window, build_schedule
 from intermit.verify.filter.answer import FloorAnswer, answer
@@ -178,10 +179,10 @@ class Adversary:
             floor.value / m.filter_minimum,
             angle.max(axis=1) / max(bound.largest_angle, tiny),
             speed.max(axis=1) / max(bound.largest_rate, tiny),
-            m.peak_euclidean / max(found.torque.applied, tiny),
+            m.peak[EUCLIDEAN] / max(found.torque.applied, tiny),
             settled,
             np.max(list(now.values()), axis=(0, 2)),
-            m.peak_commanded_euclidean / max(found.torque.commanded, tiny),
+            m.peak_commanded[EUCLIDEAN] / max(found.torque.commanded, tiny),
             kappa / max(found.torque.gain, tiny),
         ]
         return np.where(inside, np.stack(rows), 0.0)

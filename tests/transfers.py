@@ -7,15 +7,15 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 import numpy as np
+from intermit.models.norms import EUCLIDEAN, LARGEST_COMPONENT, Norm, thrusters
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import Hermite, Window, build_schedule
-from intermit.optim.norms import Euclidean, LargestComponent, Norm, ThrusterAxes
 from intermit.optim.problem import TransferProblem, WindowProfile, quaternion_from_axis_angle
 from problems import J1, UNIT, paper_schedule
 
 HALF_TURN_TIME = Fraction("3.2431")
 """Bilimoria and Wie (J. Guidance 16, 1993): least time of a 180 deg turn, unit inertia, unit cube torque."""
-TETRAHEDRON = ThrusterAxes.from_rows([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
+TETRAHEDRON = thrusters([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
 
 
 def paper_transfer(
@@ -62,6 +62,6 @@ def random_transfer(number: int) -> TransferProblem:
         horizon=horizon,
         attitude=quaternion_from_axis_angle(axis, angle),
         rate=rate.tolist(),
-        norm=(Euclidean(), LargestComponent(), TETRAHEDRON)[number % 3],
+        norm=(EUCLIDEAN, LARGEST_COMPONENT, TETRAHEDRON)[number % 3],
         profile=WindowProfile.GAIN if number % 5 == 0 else WindowProfile.FULL,
     )

@@ -35,7 +35,6 @@ class EvidenceKind(Enum):
     CERTIFICATE = "certificate"
     THEOREM = "theorem"
     WITNESS = "witness"
-    COMPUTATION = "computation"
     SAMPLES = "samples"
 
 

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any, final
 
 import numpy as np
 
+from ..norms import MEASURED, Norm
 from ..simulation.phases import Phase
 from ..types import Array
-from .observables import NAMES, Observables
+from .observables import FILTER, LENGTH, SETTLING, Name, Observables, extremes
 from .runs import Runs
 from .step import Basis, Index, Mask, Observer, Step, nested
 
@@ -31,15 +33,17 @@ def _nodes() -> tuple[Array, Array]:
 @final
 @dataclass(frozen=True, kw_only=True)
 class MetricOptions:
-    """What counts as settled.
+    """What counts as settled, and how torques are measured.
 
     Attributes
     ----------
     attitude, rate : largest |bv| and largest |w| (rad/s); both signs of the quaternion count
+    norms : in which the torque is measured
     """
 
     attitude: float = 1e-2
     rate: float = 1e-2
+    norms: tuple[Norm, ...] = MEASURED
 
     def __post_init__(self) -> None:
         if not (self.attitude > 0 and self.rate > 0):
@@ -53,18 +57,16 @@ class EnsembleMetrics:
 
     Attributes
     ----------
-    peak_component, peak_euclidean : largest |component| and norm of the applied torque g u, N m
-    peak_commanded_component, peak_commanded_euclidean : the same of u in phases with g, N m
-    impulse : integral of the norm of the applied torque, N m s, to about 1e-5 (the norm has a corner
+    peak : largest applied torque g u by norm, in the norm's unit
+    peak_commanded : the same of u in phases with g
+    impulse : integral of the length of the applied torque, N m s, to about 1e-5 (the length has a corner
         wherever the torque passes close to zero)
     filter_minimum, filter_minimum_time : least R, s, and when, s; NaN for laws without R
     settling_time : last time outside the tolerances, s; NaN for a run that ends outside
     """
 
-    peak_component: Array
-    peak_euclidean: Array
-    peak_commanded_component: Array
-    peak_commanded_euclidean: Array
+    peak: Mapping[Norm, Array]
+    peak_commanded: Mapping[Norm, Array]
     impulse: Array
     filter_minimum: Array
     filter_minimum_time: Array
@@ -76,10 +78,11 @@ class MetricsObserver(Observer):
     """Keeps, for every run and figure, the step on which it is attained."""
 
     def __init__(self, runs: Runs, phases: tuple[Phase, ...], options: MetricOptions) -> None:
-        self._observables = Observables(runs, phases, options.attitude, options.rate)
+        self._norms = options.norms
+        self._observables = Observables(runs, phases, options.attitude, options.rate, options.norms)
         self._start = float(phases[0].start)
         count, size = runs.count, runs.states.shape[0]
-        self._best = [_Record(count, size) for _ in NAMES]
+        self._best = {name: _Record(count, size) for name in extremes(options.norms)}
         self._outside = _Record(count, size)
         self._impulse = np.zeros(count)
         self._phase = 0
@@ -96,30 +99,33 @@ class MetricsObserver(Observer):
         phase = np.full(step.runs.size, self._phase)
         times = step.start[:, None] + step.length[:, None] * self._fractions
         values = self._observables(step.runs, phase, times, states)
-        self._impulse[step.runs] += step.length * (values["peak_euclidean"] @ self._weights)
-        for name, record in zip(NAMES, self._best, strict=True):
+        self._impulse[step.runs] += step.length * (values[LENGTH] @ self._weights)
+        for name, record in self._best.items():
             node = np.argmax(values[name], axis=1)
             record.keep_larger(step, phase, values[name][np.arange(shape[0]), node], node)
-        outside = values["settling"] > 0
+        outside = values[SETTLING] > 0
         last = shape[1] - 1 - np.argmax(outside[:, ::-1], axis=1)
         chosen = np.asarray(outside.any(axis=1))
         self._outside.replace(step, phase, chosen, step.start + step.length, last)
 
     def metrics(self, completed: Mask, end: float) -> EnsembleMetrics:
         """Refine every figure on the step that holds it."""
-        found = {n: self._refined(n, r) for n, r in zip(NAMES, self._best, strict=True) if n != "settling"}
-        least, when = found["filter_minimum"]
-        settled = self._settled(end)
-        values = {
-            **{name: value for name, (value, _) in found.items()},
-            "impulse": self._impulse,
-            "filter_minimum": np.where(np.isfinite(least), -least, np.nan),
-            "filter_minimum_time": np.where(np.isfinite(least), when, np.nan),
-            "settling_time": settled,
-        }
-        return EnsembleMetrics(**{k: np.where(completed, v, np.nan) for k, v in values.items()})
+        found = {n: self._refined(n, record) for n, record in self._best.items() if n != SETTLING}
+        least, when = found[FILTER]
 
-    def _refined(self, name: str, record: _Record) -> tuple[Array, Array]:
+        def told(values: Array) -> Array:
+            return np.where(completed, values, np.nan)
+
+        return EnsembleMetrics(
+            peak={norm: told(found["peak", norm][0]) for norm in self._norms},
+            peak_commanded={norm: told(found["peak_commanded", norm][0]) for norm in self._norms},
+            impulse=told(self._impulse),
+            filter_minimum=told(np.where(np.isfinite(least), -least, np.nan)),
+            filter_minimum_time=told(np.where(np.isfinite(least), when, np.nan)),
+            settling_time=told(self._settled(end)),
+        )
+
+    def _refined(self, name: Name, record: _Record) -> tuple[Array, Array]:
         """Largest value near the best node, and its time: golden section, all runs at once."""
         runs = np.flatnonzero(record.seen)
         low = self._fractions[np.maximum(record.node - 1, 0)][runs]
@@ -141,7 +147,7 @@ class MetricsObserver(Observer):
         return best, record.start + at * record.length
 
     def _closer(
-        self, name: str, record: _Record, runs: Index, low: Array, high: Array
+        self, name: Name, record: _Record, runs: Index, low: Array, high: Array
     ) -> tuple[Array, Array]:
         """A bracket small enough to hold one maximum only: largest components change hands in the first."""
         x = low[:, None] + (high - low)[:, None] * np.linspace(0, 1, SCAN)
@@ -157,17 +163,17 @@ class MetricsObserver(Observer):
         high = self._fractions[np.minimum(record.node[runs] + 1, self._fractions.size - 1)]
         for _ in range(50):
             middle = (low + high) / 2
-            outside = self._value("settling", record, runs, middle) > 0
+            outside = self._value(SETTLING, record, runs, middle) > 0
             low, high = np.where(outside, middle, low), np.where(outside, high, middle)
         times = np.full(record.seen.size, self._start)
         times[runs] = record.start[runs] + record.length[runs] * high
         at_end = record.seen & (record.node == self._fractions.size - 1)
         return np.where(at_end & (record.value >= end * (1 - 1e-15)), np.nan, times)
 
-    def _value(self, name: str, record: _Record, runs: Index, x: Array) -> Array:
+    def _value(self, name: Name, record: _Record, runs: Index, x: Array) -> Array:
         return self._values(name, record, runs, x[:, None])[:, 0]
 
-    def _values(self, name: str, record: _Record, runs: Index, x: Array) -> Array:
+    def _values(self, name: Name, record: _Record, runs: Index, x: Array) -> Array:
         """One observable at fractions x (m, p) of the remembered steps."""
         step = record.step(runs)
         times = step.start[:, None] + step.length[:, None] * x
@@ -178,8 +184,14 @@ def joined_metrics(parts: list[EnsembleMetrics]) -> EnsembleMetrics | None:
     """Metrics of several stacks, in order; None if there are none."""
     if not parts:
         return None
-    names = [f.name for f in fields(EnsembleMetrics)]
-    return EnsembleMetrics(**{n: np.concatenate([getattr(p, n) for p in parts]) for n in names})
+    joined: dict[str, Any] = {}
+    for name in (f.name for f in fields(EnsembleMetrics)):
+        values = [getattr(part, name) for part in parts]
+        if name in ("peak", "peak_commanded"):
+            joined[name] = {norm: np.concatenate([v[norm] for v in values]) for norm in values[0]}
+        else:
+            joined[name] = np.concatenate(values)
+    return EnsembleMetrics(**joined)
 
 
 class _Record:

@@ -44,8 +44,10 @@ def normalised(
 
     Parameters
     ----------
-    times : sequence of Fraction, shape (n,), s
-    thrusts : sequence of Fraction, shape (n,), in one unit
+    times : Sequence[Fraction]
+        Instants, shape (n,), s.
+    thrusts : Sequence[Fraction]
+        Thrust at them, shape (n,), all in one unit.
     zero_below : Fraction
         Threshold on g in [0, 1): noise below it, negative readings included, counts as no thrust.
     full_thrust : Fraction or None

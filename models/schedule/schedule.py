@@ -133,13 +133,6 @@ class Schedule:
         if current is not None:
             yield current
 
-    def knots_between(self, start: Fraction, stop: Fraction) -> tuple[Fraction, ...]:
-        """Start, the knots strictly inside (start, stop), and stop: no integration may cross one."""
-        inside = {p.start for p in self.pieces_between(start, stop)} | {
-            p.end for p in self.pieces_between(start, stop)
-        }
-        return (start, *sorted(k for k in inside if start < k < stop), stop)
-
     @cached_property
     def _float_table(self) -> tuple[Array, Array]:
         """Knots (n + 1,) and local coefficients (4 or more, n), lowest power first."""

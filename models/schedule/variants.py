@@ -149,8 +149,12 @@ def longer_gap(schedule: Schedule, at: Fraction, extra: Fraction) -> Schedule:
 
     Parameters
     ----------
+    schedule : Schedule
+        What is changed; it stays as it is.
     at : Fraction
         A knot in [0, end] from which g is zero (or, at `end`, zero again at the next period's start).
+    extra : Fraction
+        Length put in, s, >= 0.
 
     Raises
     ------

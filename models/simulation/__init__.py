@@ -10,6 +10,8 @@ from .metrics import (
     invariants,
     maximum,
     minimum,
+    peak_commanded_torque,
+    peak_torque,
     settling_time,
     torque_metrics,
 )
@@ -31,6 +33,8 @@ __all__ = [
     "invariants",
     "maximum",
     "minimum",
+    "peak_commanded_torque",
+    "peak_torque",
     "phase_field",
     "phases_between",
     "read_figures",

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
 
+from ..norms import MEASURED, Norm
 from .metrics import Extremum, TorqueMetrics, filter_minimum, settling_time, torque_metrics
 from .trajectory import Trajectory
 
@@ -28,19 +30,25 @@ class Figures:
 
 
 def read_figures(
-    trajectory: Trajectory, *, attitude: Fraction, rate: Fraction, until_settled: bool = False
+    trajectory: Trajectory,
+    *,
+    attitude: Fraction,
+    rate: Fraction,
+    until_settled: bool = False,
+    norms: Sequence[Norm] = MEASURED,
 ) -> Figures:
     """Read the figures off a run.
 
     Parameters
     ----------
     attitude, rate : tolerances on |bv| and on |w| (rad/s), Euclidean, within which it has settled
+    norms : in which the torque is measured
     until_settled : torque figures end at the settling time, where there is one, not at the horizon
     """
     settling = settling_time(trajectory, attitude=float(attitude), rate=float(rate))
     has_filter = "R" in trajectory.loop.controller_states
     return Figures(
         settling,
-        torque_metrics(trajectory, until=settling if until_settled else None),
+        torque_metrics(trajectory, settling if until_settled else None, norms),
         filter_minimum(trajectory) if has_filter else None,
     )

@@ -18,7 +18,12 @@ def idle_lead(law: Law, schedule: Schedule, rate: ArrayLike) -> Fraction:
 
     Parameters
     ----------
-    rate : (3,), rad/s: the rate at the start of the run
+    law : Law
+        The law that is run.
+    schedule : Schedule
+        Its windows.
+    rate : ArrayLike
+        (3,), rad/s: the rate at the start of the run.
     """
     import numpy as np
 

@@ -73,14 +73,19 @@ def simulate(
 
     Parameters
     ----------
-    law, body, schedule : what is simulated
-    quaternion : (4,), scalar first, unit; error attitude against the target
-    rate : (3,), rad/s, body frame
-    horizon, start : end and start of the run, s
-    saturation : limit on the applied torque; no claim of the package covers a saturated run
-        (the adaptive gain can even escape in finite time there: its rate grows like k^2 once
-        the torque no longer holds Omega down)
-    method : integrator and its tolerances
+    law, body, schedule : Law, RigidBody, Schedule
+        What is simulated.
+    quaternion : ArrayLike
+        (4,), scalar first, unit; error attitude against the target.
+    rate : ArrayLike
+        (3,), rad/s, body frame.
+    horizon, start : Fraction
+        End and start of the run, s.
+    saturation : Saturation, optional
+        Limit on the applied torque; no claim of the package covers a saturated run (the adaptive gain can
+        even escape in finite time there: its rate grows like k^2 once the torque no longer holds Omega down).
+    method : DOP853, optional
+        Integrator and its tolerances.
 
     Raises
     ------

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..norms import EUCLIDEAN, MEASURED, Norm
 from ..types import Array
 from .trajectory import Trajectory
 
@@ -31,16 +32,14 @@ class TorqueMetrics:
 
     Attributes
     ----------
-    peak_component, peak_euclidean : largest |component| and largest norm of the applied torque, N m
-    peak_commanded_component, peak_commanded_euclidean : the same of u while g > 0, N m
+    peak : largest applied torque by the norm it is measured in, in the norm's unit
+    peak_commanded : the same of u while g > 0
     impulse : integral of the Euclidean norm of the applied torque, N m s
     until : end of the interval, s
     """
 
-    peak_component: Extremum
-    peak_euclidean: Extremum
-    peak_commanded_component: Extremum
-    peak_commanded_euclidean: Extremum
+    peak: Mapping[Norm, Extremum]
+    peak_commanded: Mapping[Norm, Extremum]
     impulse: float
     until: float
 
@@ -97,21 +96,28 @@ def minimum(trajectory: Trajectory, of: ScalarOfTime, until: float | None = None
     return Extremum(-peak.value, peak.time)
 
 
-def torque_metrics(trajectory: Trajectory, until: float | None = None) -> TorqueMetrics:
-    """Peaks and impulse of the torque over [start, until]."""
+def peak_torque(trajectory: Trajectory, norm: Norm, until: float | None = None) -> Extremum:
+    """Largest applied torque over [start, until] in a norm, in the norm's unit."""
+    return maximum(trajectory, lambda t: norm.peak(trajectory.signals(t).applied_torque.T), until)
 
-    def applied(t: Array) -> Array:
-        return trajectory.signals(t).applied_torque
 
-    def commanded(t: Array) -> Array:
+def peak_commanded_torque(trajectory: Trajectory, norm: Norm, until: float | None = None) -> Extremum:
+    """Largest commanded torque while g > 0 over [start, until] in a norm, in the norm's unit."""
+
+    def size(t: Array) -> Array:
         signals = trajectory.signals(t)
-        return np.where(signals.gain > 0, signals.commanded_torque, 0.0)
+        return norm.peak(np.where(signals.gain > 0, signals.commanded_torque, 0.0).T)
 
+    return maximum(trajectory, size, until)
+
+
+def torque_metrics(
+    trajectory: Trajectory, until: float | None = None, norms: Sequence[Norm] = MEASURED
+) -> TorqueMetrics:
+    """Peaks in each norm, and impulse, of the torque over [start, until]."""
     return TorqueMetrics(
-        peak_component=maximum(trajectory, lambda t: np.abs(applied(t)).max(axis=0), until),
-        peak_euclidean=maximum(trajectory, lambda t: np.linalg.norm(applied(t), axis=0), until),
-        peak_commanded_component=maximum(trajectory, lambda t: np.abs(commanded(t)).max(axis=0), until),
-        peak_commanded_euclidean=maximum(trajectory, lambda t: np.linalg.norm(commanded(t), axis=0), until),
+        peak={norm: peak_torque(trajectory, norm, until) for norm in norms},
+        peak_commanded={norm: peak_commanded_torque(trajectory, norm, until) for norm in norms},
         impulse=_impulse(trajectory, until),
         until=trajectory.end if until is None else until,
     )
@@ -128,8 +134,8 @@ def _impulse(trajectory: Trajectory, until: float | None) -> float:
         if segment.phase.is_torque_free or not half.any():
             continue
         times = (edges[:-1] + half)[:, None] + half[:, None] * nodes
-        norm = np.linalg.norm(trajectory.signals(times.ravel()).applied_torque, axis=0)
-        total += float(np.sum(norm.reshape(times.shape) * weights * half[:, None]))
+        size = EUCLIDEAN.peak(trajectory.signals(times.ravel()).applied_torque.T)
+        total += float(np.sum(size.reshape(times.shape) * weights * half[:, None]))
     return total
 
 

@@ -12,7 +12,7 @@ from typing import final
 
 import numpy as np
 
-from ..norms import Euclidean, LargestComponent
+from ...verify.exact.rounding import rounded_down
 from ..problem import TransferProblem
 from .argument import Argument, ComponentsArgument, MomentumArgument, PathArgument, StartSet
 from .potential.cache import remembered
@@ -24,7 +24,7 @@ from .sets.momentum_sets import MomentumSet, UnitBall
 from .windows.coast import Coast, coasts
 from .windows.components import TransferSides, Widths, component_bounds, peak_from_components
 from .windows.deviation import deviation_above, growth_of_deviations
-from .windows.travel import WindowTravel, least_peak, momentum_peak, rounded_down
+from .windows.travel import WindowTravel, least_peak, momentum_peak
 
 TRIALS = (1.0, 1.03, 1.07, 1.12, 1.18, 1.25, 1.35, 1.5, 1.75)
 """Trial peaks of the bound by components over the best other bound: any are valid, the best is kept."""
@@ -96,7 +96,7 @@ def certified_lower_bound(problem: TransferProblem, *, options: PathOptions | No
     component from rest to exact rest, components.
     """
     options = options or PathOptions()
-    if isinstance(problem.norm, Euclidean):
+    if problem.norm.is_ball:
         bounds = _euclidean(problem, options)
     else:
         # The invariant set lies in the ball of the longest torque: little is lost by a coarse potential here.
@@ -119,7 +119,7 @@ def _by_invariant_set(problem: TransferProblem, options: PathOptions) -> list[Na
     names = ("momentum in the invariant set", "invariant set")
     result = _momentum_and_path(problem, momenta, options, names)
     at_rest = problem.starts_at_rest and not problem.terminal.rate
-    if isinstance(problem.norm, LargestComponent) and at_rest and options.components:
+    if problem.norm.is_cube and at_rest and options.components:
         result += _by_components(problem, momenta, options, max(bound.exact for bound in result))
     return result
 

@@ -11,30 +11,34 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
+from ...models.norms import EUCLIDEAN, LARGEST_COMPONENT, Norm
 from ...verify import checker
 from ...verify.certificates import Certificate, certificate_text
-from ..norms import Euclidean, LargestComponent, Norm, ThrusterAxes
+from ...verify.exact.ball import length
+from ...verify.exact.rounding import grid_above, grid_below, rounded_down
 from ..problem import TransferProblem
 from .argument import Argument, ComponentsArgument, MomentumArgument, PathArgument
 from .bound import LowerBound, NamedBound, start_momentum
 from .potential.path import PathBound
 from .potential.separation import Separation
-from .sets.chart import square_root
-from .sets.gauge import GaugeSet, torque_vertices
+from .sets.gauge import GaugeSet
 from .sets.momentum_sets import MomentumSet, greatest_inertia_above, least_inertia_below
-from .windows.travel import WindowTravel, least_peak, rounded_down
+from .sets.polynomials import exponents
+from .windows.travel import WindowTravel, least_peak
 
 KIND = "peak-lower-bound"
-_FINE = 2**120
+_BITS = 120
 _LESS = 1 - Fraction(1, 2**64)
 """The checker rounds its square roots: a travel is claimed a trifle smaller."""
 
 
 def peak_certificate(problem: TransferProblem, bound: NamedBound) -> Certificate | None:
-    """Certificate of one of a problem's lower bounds; None if it claims nothing.
+    """Certificate of one of a problem's lower bounds; None if it claims nothing or the format cannot say it.
 
     The peak claimed is the bound's value, or one float less.
     """
+    if not has_certificate(problem.norm):
+        return None
     argument = bound.argument
     scale = _scale(problem, argument)
     witness: dict[str, Any] = {"rows": _rows(argument.momenta, problem)}
@@ -81,22 +85,23 @@ def transfer_data(problem: TransferProblem) -> dict[str, Any]:
     }
 
 
+def has_certificate(norm: Norm) -> bool:
+    """Whether the certificate's format can say what limits the torque."""
+    only_thrusters = all(block.is_one_sided for block in norm.blocks)
+    return norm.is_ball or norm.is_cube or only_thrusters
+
+
 def _torque(norm: Norm) -> dict[str, Any]:
-    if isinstance(norm, Euclidean):
-        return {"by": "euclidean"}
-    if isinstance(norm, LargestComponent):
-        return {"by": "component"}
-    if isinstance(norm, ThrusterAxes):
-        return {"by": "thrusters", "axes": norm.axes}
-    raise TypeError(f"there is no certificate for the {norm.name} norm")
+    if norm.is_ball:
+        return {"by": EUCLIDEAN.key}
+    return {"by": LARGEST_COMPONENT.key} if norm.is_cube else {"by": "thrusters", "axes": norm.axes}
 
 
 def _scale(problem: TransferProblem, argument: Argument) -> tuple[Fraction, Fraction]:
     """Radius of the ball of momenta that holds the torques, enclosed; 1 where the set holds them itself."""
-    if isinstance(argument.momenta, GaugeSet) or isinstance(problem.norm, Euclidean):
+    if isinstance(argument.momenta, GaugeSet) or problem.norm.is_ball:
         return Fraction(1), Fraction(1)
-    square = max(sum((x * x for x in t), Fraction(0)) for t in torque_vertices(problem.norm))
-    return square_root(square)
+    return max(length(t) for t in problem.norm.corners())
 
 
 def _rows(momenta: MomentumSet, problem: TransferProblem) -> list[tuple[Fraction, Fraction]]:
@@ -187,14 +192,16 @@ def _separation(proof: Separation | None, scale: Fraction) -> dict[str, Any]:
             "inner": chart.inner,
             "outer": chart.outer,
         },
-        "potential": [[*e, c] for e, c in proof.potential.items()],
+        "potential": [
+            [*e, c] for e in exponents(proof.potential.degree) if (c := proof.potential.coefficient(e))
+        ],
         "rate": Fraction(proof.supremum.value) * scale,
     }
 
 
 def _down(x: Fraction) -> Fraction:
-    return Fraction((x * _FINE).__floor__(), _FINE)
+    return grid_below(x, _BITS)
 
 
 def _up(x: Fraction) -> Fraction:
-    return Fraction((x * _FINE).__ceil__(), _FINE)
+    return grid_above(x, _BITS)

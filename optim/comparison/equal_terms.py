@@ -7,18 +7,15 @@ certified bound <= optimum <= law's peak must hold; the three are computed apart
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, final
+from typing import TYPE_CHECKING, final
 
-from ..norms import Euclidean, LargestComponent, Norm
+from ...models.norms import Norm
 from ..problem import Terminal, TransferProblem, WindowProfile
 from .measure import Goal, LawRun
 
 if TYPE_CHECKING:
     from ..bounds.bound import LowerBound
     from ..peak import PeakAnswer
-
-NormName = Literal["component", "euclidean"]
-NORMS: dict[str, Norm] = {"component": LargestComponent(), "euclidean": Euclidean()}
 
 SLACK = 1e-6
 """Relative allowance for the optimum's mesh gap and the run's error; the bound gets none."""
@@ -40,7 +37,7 @@ class EqualTerms:
     answer, certificate : where optimum and bound come from
     """
 
-    norm: str
+    norm: Norm
     problem: TransferProblem
     law_peak: float
     optimum: float | None
@@ -64,7 +61,7 @@ class EqualTerms:
         return (self.optimum - self.bound) / self.optimum if self.optimum else None
 
 
-def problem_of(run: LawRun, norm: str, goal: Goal, profile: WindowProfile) -> TransferProblem:
+def problem_of(run: LawRun, norm: Norm, goal: Goal, profile: WindowProfile) -> TransferProblem:
     """The transfer a law made, as a problem for any controller."""
     task = run.task
     return TransferProblem.through(
@@ -73,21 +70,27 @@ def problem_of(run: LawRun, norm: str, goal: Goal, profile: WindowProfile) -> Tr
         horizon=goal.time,
         attitude=task.quaternion,
         rate=task.rate,
-        norm=NORMS[norm],
+        norm=norm,
         terminal=Terminal(attitude=goal.attitude, rate=goal.rate),
         profile=profile,
     )
 
 
 def on_equal_terms(
-    run: LawRun, norm: NormName, *, goal: Goal | None = None, profile: WindowProfile = WindowProfile.FULL
+    run: LawRun, norm: Norm, *, goal: Goal | None = None, profile: WindowProfile = WindowProfile.FULL
 ) -> EqualTerms:
     """Find the optimum and the certified bound for a law's own transfer, and check their order.
 
     Parameters
     ----------
-    goal : the end asked for; None for the law's settling
-    profile : GAIN compares the command u through w = g, FULL the applied torque g u
+    run : LawRun
+        The law's run, with its task.
+    norm : NormName
+        Norm of the torque whose peak is compared.
+    goal : Goal, optional
+        The end asked for; None for the law's settling.
+    profile : WindowProfile
+        GAIN compares the command u through w = g, FULL the applied torque g u.
 
     Raises
     ------
@@ -109,7 +112,7 @@ def on_equal_terms(
     certificate = certified_lower_bound(problem)
     optimum = answer.peak if answer.standing is Standing.CHECKED else None
     terms = EqualTerms(norm, problem, peak, optimum, certificate.value, answer, certificate)
-    check_order(terms.bound, terms.optimum, terms.law_peak, what=f"{run.label}, {norm}")
+    check_order(terms.bound, terms.optimum, terms.law_peak, what=f"{run.label}, {norm.key}")
     return terms
 
 

@@ -9,12 +9,15 @@ from typing import final
 import numpy as np
 
 from ...models.laws import Law
+from ...models.norms import Norm
 from ...models.rigid_body import RigidBody
 from ...models.schedule import Schedule
 from ...models.simulation import (
     DOP853,
     Figures,
     Trajectory,
+    peak_commanded_torque,
+    peak_torque,
     read_figures,
     simulate,
 )
@@ -77,10 +80,14 @@ class LawRun:
     trajectory: Trajectory
     figures: Figures
 
-    def peak(self, norm: str, *, commanded: bool = False) -> float:
-        """Peak of the torque g u, or of the command u, N m, in the norm "component" or "euclidean"."""
-        kind = "peak_commanded" if commanded else "peak"
-        return float(getattr(self.figures.torque, f"{kind}_{norm}").value)
+    def peak(self, norm: Norm, *, commanded: bool = False) -> float:
+        """Peak of the torque g u, or of the command u, in a norm and its unit."""
+        torque = self.figures.torque
+        known, measure = (
+            (torque.peak_commanded, peak_commanded_torque) if commanded else (torque.peak, peak_torque)
+        )
+        found = known[norm] if norm in known else measure(self.trajectory, norm, until=torque.until)
+        return found.value
 
     @property
     def end(self) -> tuple[float, float]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from ...models.ensemble import EnsembleResult, MetricOptions, Tolerances, simulate_ensemble
 from ...models.laws import Law
+from ...models.norms import Norm
 from ...models.types import Array
 from ..comparison.measure import Task
 from .search import Outcomes
@@ -28,12 +29,12 @@ class EnsembleRuns:
     law : the law whose parameters are varied
     task : its work
     settle : settling time asked for, s
-    norm : "component" or "euclidean"
+    norm : of the peak
     executor : workers that share the runs of a generation, optional
     """
 
     def __init__(
-        self, law: Law, task: Task, *, settle: Fraction, norm: str, executor: Executor | None = None
+        self, law: Law, task: Task, *, settle: Fraction, norm: Norm, executor: Executor | None = None
     ) -> None:
         # one period more than asked for: what leaves the tolerances again has not settled
         self._horizon = min(settle + (task.schedule.period or Fraction(0)), max(task.horizon, settle))
@@ -53,14 +54,13 @@ class EnsembleRuns:
             horizon=self._horizon,
             times=self._late,
             tolerances=SEARCHING,
-            metrics=MetricOptions(attitude=float(task.attitude_tolerance), rate=float(task.rate_tolerance)),
+            metrics=MetricOptions(
+                attitude=float(task.attitude_tolerance), rate=float(task.rate_tolerance), norms=(self._norm,)
+            ),
             executor=self._executor,
         )
         assert result.metrics is not None
-        peak = {
-            "component": result.metrics.peak_component,
-            "euclidean": result.metrics.peak_euclidean,
-        }[self._norm]
+        peak = result.metrics.peak[self._norm]
         excess = self._excess(result)
         failed = ~result.completed | ~np.isfinite(peak)
         return Outcomes(np.where(failed, np.inf, peak), np.where(failed, np.inf, excess))

@@ -9,7 +9,8 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any, final
 
 from ...models.laws import Law
-from ..comparison.equal_terms import NORMS, check_order
+from ...models.norms import Norm
+from ..comparison.equal_terms import check_order
 from ..comparison.measure import LawRun, Task
 from ..problem import Terminal, TransferProblem
 from .search import DifferentialEvolution
@@ -52,14 +53,14 @@ class Front:
     runs : by label, the accurate run of each (None where nothing was found)
     """
 
-    norm: str
+    norm: Norm
     settles: tuple[Fraction, ...]
     best: tuple[BestPossible, ...]
     laws: Mapping[str, tuple[Tuned, ...]]
     runs: Mapping[str, tuple[LawRun | None, ...]]
 
 
-def best_possible(task: Task, settle: Fraction, norm: str) -> BestPossible:
+def best_possible(task: Task, settle: Fraction, norm: Norm) -> BestPossible:
     """Optimum and certified bound for the task's terminal balls at a given time."""
     from ..bounds.bound import certified_lower_bound
     from ..peak import minimum_peak
@@ -67,12 +68,12 @@ def best_possible(task: Task, settle: Fraction, norm: str) -> BestPossible:
 
     problem = TransferProblem.through(
         task.schedule, body=task.body, horizon=settle, attitude=task.quaternion, rate=task.rate,
-        norm=NORMS[norm], terminal=Terminal(attitude=task.attitude_tolerance, rate=task.rate_tolerance),
+        norm=norm, terminal=Terminal(attitude=task.attitude_tolerance, rate=task.rate_tolerance),
     )  # fmt: skip
     answer = minimum_peak(problem)
     certificate = certified_lower_bound(problem)
     optimum = answer.peak if answer.standing is Standing.CHECKED else None
-    check_order(certificate.value, optimum, None, what=f"{float(settle):g} s, {norm}")
+    check_order(certificate.value, optimum, None, what=f"{float(settle):g} s, {norm.key}")
     return BestPossible(settle, optimum, certificate.value, answer, certificate)
 
 
@@ -81,7 +82,7 @@ def pareto_front(
     task: Task,
     settles: Sequence[Fraction],
     *,
-    norm: str,
+    norm: Norm,
     method: DifferentialEvolution | None = None,
     certify: Mapping[str, Certify] | None = None,
     executor: Executor | None = None,

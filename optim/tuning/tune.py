@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import final
 
 from ...models.laws import Law
+from ...models.norms import Norm
 from ..comparison.measure import LawRun, Task, run_law
 from .evaluate import EnsembleRuns
 from .search import DifferentialEvolution, SearchHistory, Trial
@@ -35,7 +36,7 @@ class Tuned:
 
     label: str
     settle: Fraction
-    norm: str
+    norm: Norm
     law: Law | None
     history: SearchHistory
     refused: tuple[tuple[Trial, str], ...]
@@ -51,7 +52,7 @@ def tune(
     task: Task,
     *,
     settle: Fraction,
-    norm: str,
+    norm: Norm,
     label: str = "",
     ranges: Mapping[str, tuple[Fraction, Fraction]] | None = None,
     method: DifferentialEvolution | None = None,
@@ -65,14 +66,21 @@ def tune(
     law : Law
         Its positive parameters are varied.
     task : Task
+        What it has to do: body, windows, start, tolerances, horizon.
     settle : Fraction
         Latest settling time, s.
-    norm : "component" or "euclidean"
+    norm : Norm
         Of the peak that is made small.
+    label : str
+        Name in the result; the law's own without one.
     ranges : mapping, optional
         (low, high) by parameter; a factor of 30 either way of the given value by default.
+    method : DifferentialEvolution, optional
+        The search and its effort; its defaults without one.
     certify : callable, optional
         Conditions the answer must meet.
+    start_from_law : bool
+        Whether the law's own parameters are the first candidate.
 
     Returns
     -------

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ...models.laws import Law
+from ...models.norms import LARGEST_COMPONENT, NORMS
 from ...models.schedule import Schedule
 from ...scenario import Scenario
 from ...verify.filter.certify import FloorOptions, certify_floor
@@ -31,7 +32,7 @@ def floor_question(scenario: Scenario, law: Law, seen: RunFigures, *, search: bo
         attitude=scenario.tolerance.attitude,
         rate=scenario.tolerance.rate,
         torque_limit=None if limits is None else limits.torque,
-        torque_norm="component" if limits is None else limits.norm,
+        torque_norm=LARGEST_COMPONENT if limits is None else NORMS[limits.norm],
         run_floor=None if seen.floor is None else (seen.floor, float(scenario.horizon)),
         run_peak=seen.peak,
         search=Search(samples=64, rounds=2, local=24, seed=scenario.check.seed) if search else None,

@@ -21,8 +21,14 @@ def storage_history(
 
     Parameters
     ----------
-    floor : R_min in k* = 1/R_min, s
-    claim : the run's law's "lyapunov.derivative"
+    trajectory : Trajectory
+        The run.
+    times : Array
+        Instants, (n,), s.
+    floor : Fraction, optional
+        R_min in k* = 1/R_min, s.
+    claim : Claim, optional
+        The run's law's "lyapunov.derivative".
 
     Returns
     -------

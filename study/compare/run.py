@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any, final
 import numpy as np
 
 from ...errors import InputError
+from ...models.norms import EUCLIDEAN, LARGEST_COMPONENT, NORMS
 from ...models.simulation import SimulationError
 from ...models.types import Array
-from ...optim.comparison.equal_terms import EqualTerms, NormName, on_equal_terms
+from ...optim.comparison.equal_terms import EqualTerms, on_equal_terms
 from ...optim.comparison.measure import Goal, LawRun, run_law
 from ...optim.problem import WindowProfile
 from ...reports import parts
@@ -84,12 +85,12 @@ class Comparison(Shown):
         title = f"Laws of {self.scenario.name} on equal terms"
         return Summary(title, why, [printed(table) for table in tables])
 
-    def plot(self, norm: NormName | None = None) -> NDArray[np.object_]:
+    def plot(self, norm: str | None = None) -> NDArray[np.object_]:
         """Draw the size of each law's torque, N m, until it settles, over the certified bound.
 
         Parameters
         ----------
-        norm : of the torque; the scenario's first without one
+        norm : word of the norm of the torque; the scenario's first without one
 
         Returns
         -------
@@ -133,8 +134,7 @@ def torque_size(row: Row, norm: str) -> tuple[Array, Array]:
     assert row.run is not None
     end = row.run.figures.settling if row.run.figures.settling is not None else row.run.trajectory.end
     t = np.linspace(0, end, POINTS)
-    torque = row.run.trajectory.signals(t).applied_torque
-    return t, np.abs(torque).max(axis=0) if norm == "component" else np.linalg.norm(torque, axis=0)
+    return t, NORMS[norm].peak(row.run.trajectory.signals(t).applied_torque.T)
 
 
 def _chart(row: Row, norm: str) -> Chart:
@@ -182,7 +182,9 @@ def _row(scenario: Scenario, choice: Any, options: CompareOptions) -> Row:
 
 def _terms(scenario: Scenario, run: LawRun, goal: Goal) -> dict[str, EqualTerms]:
     profile = WindowProfile.GAIN if scenario.compare.profile == "gain" else WindowProfile.FULL
-    return {norm: on_equal_terms(run, norm, goal=goal, profile=profile) for norm in scenario.compare.norms}
+    return {
+        word: on_equal_terms(run, NORMS[word], goal=goal, profile=profile) for word in scenario.compare.norms
+    }
 
 
 def _unsettled(run: LawRun) -> str:
@@ -260,8 +262,8 @@ def _law_cells(row: Row) -> dict[str, Any]:
     return {
         "law": row.label,
         "settling": settling,
-        "component": newtons("component", run.peak("component")),
-        "euclidean": newtons("euclidean", run.peak("euclidean")),
+        "component": newtons("component", run.peak(LARGEST_COMPONENT)),
+        "euclidean": newtons("euclidean", run.peak(EUCLIDEAN)),
         "impulse": parts.figure_of("impulse", run.figures.torque.impulse, digits=4, unit="N m s"),
         "floor": None if floor is None else parts.figure_of("floor", floor.value, digits=6, unit="s"),
     }

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from decimal import ROUND_FLOOR, Decimal
 from typing import TYPE_CHECKING, Any, final
 
+from ...models.norms import NORMS
 from ...reports.content.blocks import Axis, Chart
 from ...reports.summary import Shown, Summary
 from ...scenario import Scenario
+from ...verify.exact.rounding import digits_below
 from ...verify.verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict
-from ..options import NormKey, OptimumOptions
 from ..plots import draw
-from .run import norm_keys, norm_of, transfer
+from .run import norm_of, norms_asked, transfer
 
 if TYPE_CHECKING:
     import numpy as np
@@ -82,14 +82,14 @@ def own_bound(scenario: Scenario) -> CertifiedBound:
     """Bound the least peak in the scenario's own norm, with the certificate."""
     from ...optim.bounds import certified_lower_bound
 
-    problem = transfer(scenario, norm_of(scenario, norm_keys(scenario, OptimumOptions())[0]))
+    problem = transfer(scenario, norms_asked(scenario)[0])
     bounds = certified_lower_bound(problem)
     return CertifiedBound(scenario, problem, bounds, bound_claim(problem, bounds))
 
 
 def bound_claim(problem: TransferProblem, bound: LowerBound) -> Claim:
     """Claim the largest bound that the stand-alone checker confirms, and name a larger one without a file."""
-    from ...optim.bounds.certificate import largest_certificate
+    from ...optim.bounds.certificate import has_certificate, largest_certificate
 
     norm, unit = problem.norm.name, problem.norm.unit
     found = largest_certificate(problem, bound)
@@ -99,8 +99,12 @@ def bound_claim(problem: TransferProblem, bound: LowerBound) -> Claim:
             f"least peak torque, {norm}: bounded from below",
             f"Some peak above 0 {unit} is needed for the transfer.",
             Verdict.UNDECIDED,
-            reason="no bound above 0 was found: the start's momentum may carry the turn",
-            next_step="give a later start, or a start at rest",
+            reason="no bound above 0 was found: the start's momentum may carry the turn"
+            if has_certificate(problem.norm)
+            else f"no certificate can be written for a limit by {norm}",
+            next_step="give a later start, or a start at rest"
+            if has_certificate(problem.norm)
+            else "measure the torque by its length, its components or the thrusters' forces",
             source=SOURCE,
             counted=False,
         )
@@ -125,15 +129,14 @@ def bound_claim(problem: TransferProblem, bound: LowerBound) -> Claim:
 
 def below(value: float) -> str:
     """Seven digits of a number > 0, rounded down."""
-    exact = Decimal(value)
-    return f"{exact.quantize(Decimal(1).scaleb(exact.adjusted() - 6), ROUND_FLOOR).normalize():g}"
+    return f"{digits_below(value, 7).normalize():g}"
 
 
 def transfers_data(scenario: Scenario) -> list[Mapping[str, Any]]:
     """The scenario's transfers in every norm, as certificates say them."""
     from ...optim.bounds.certificate import transfer_data
 
-    keys: list[NormKey] = ["component", "euclidean"]
+    norms = list(NORMS.values())
     if scenario.optimum.thrusters is not None:
-        keys.append("thrusters")
-    return [transfer_data(transfer(scenario, norm_of(scenario, key)))["transfer"] for key in keys]
+        norms.append(norm_of(scenario, "thrusters"))
+    return [transfer_data(transfer(scenario, norm))["transfer"] for norm in norms]

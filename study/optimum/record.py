@@ -133,15 +133,18 @@ def start_words(optimum: Optimum) -> str:
 
 def impulse_words(optimum: Optimum) -> str:
     """The impulse of the least-peak history, and what it is the integral of."""
-    problem, kind = optimum.problem, {"component": " (axes added up)", "thrusters": " (forces added up)"}
-    return f"{optimum.answer.impulse:.6g} {problem.norm.unit} s{kind.get(optimum.key, '')}"
+    norm = optimum.problem.norm
+    added = any(not block.is_round for block in norm.blocks)
+    kind = f" ({'forces' if norm.is_one_sided else 'axes'} added up)" if added else ""
+    return f"{optimum.answer.impulse:.6g} {norm.unit} s{kind}"
 
 
 def switch_words(optimum: Optimum, time: float, component: int) -> str:
     """A switch: when, and which axis or thruster."""
     if component < 0:
         return f"{time:.4f} s"
-    which = f"thruster {component + 1}" if optimum.key == "thrusters" else "xyz"[component]
+    of_torque = optimum.problem.norm.limits_torque
+    which = "xyz"[component] if of_torque else f"thruster {component + 1}"
     return f"{time:.4f} s ({which})"
 
 

@@ -33,7 +33,6 @@ class Optimum:
 
     Attributes
     ----------
-    key : name of the norm in the record
     answer : the least peak found and its checks
     limit : the torque (or force) limit given for this norm, its unit, or None
     hopeless : why the limit cannot be met by any controller, or None
@@ -41,7 +40,6 @@ class Optimum:
     least_time, least_impulse : within the limit; None if not asked for
     """
 
-    key: NormKey
     problem: TransferProblem
     answer: PeakAnswer
     limit: float | None
@@ -49,6 +47,11 @@ class Optimum:
     bound: LowerBound | None = None
     least_time: LeastTime | None = None
     least_impulse: LeastImpulseFound | None = None
+
+    @property
+    def key(self) -> str:
+        """Word of the norm, in options and in the record."""
+        return self.problem.norm.key
 
     @property
     def gap(self) -> float | None:

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from ...models.norms import NORMS, Norm, thrusters
 from ...models.types import Progress, silent
-from ...optim.norms import Euclidean, LargestComponent, Norm, ThrusterAxes
 from ...optim.problem import Terminal, TransferProblem, WindowProfile
 from ...scenario import Scenario
-from ..options import NormKey, OptimumOptions, SolverKey
+from ..options import OptimumOptions, SolverKey
 from .result import Optimum, OptimumStudy
 
 if TYPE_CHECKING:
@@ -41,30 +42,30 @@ def run_optimum(
         seed=table.seed if options.seed is None else options.seed,
     )
     refinement, quick = Refinement(mesh_gap=options.mesh_gap), Refinement(mesh_gap=1e-5)
-    keys, optima = norm_keys(scenario, options), []
-    _needs_a_limit(scenario, options, keys)
-    for i, key in enumerate(keys):
-        tell(f"optimum, {key}", i / len(keys))
-        problem = transfer(scenario, norm_of(scenario, key))
-        limit = limit_of(scenario, key)
+    norms, optima = norms_asked(scenario, options), []
+    _needs_a_limit(scenario, options, norms)
+    for i, norm in enumerate(norms):
+        tell(f"optimum, {norm.key}", i / len(norms))
+        problem = transfer(scenario, norm)
+        limit = limit_of(scenario, norm)
         hopeless = explain(problem, limit)
         answer = minimum_peak(problem, solver=_solver(options.solver), search=search, refinement=refinement)
         bound = _bound(problem, answer, options)
         least = None
         if options.least_time and limit is not None and hopeless is None:
-            tell(f"least time, {key}", (i + 0.5) / len(keys))
+            tell(f"least time, {norm.key}", (i + 0.5) / len(norms))
             least = minimum_time(problem, limit, search=replace(search, starts=1), refinement=quick)
         spent = None
         if options.least_impulse and limit is not None and hopeless is None:
-            tell(f"least impulse, {key}", (i + 0.8) / len(keys))
+            tell(f"least impulse, {norm.key}", (i + 0.8) / len(norms))
             few = replace(search, starts=min(2, search.starts))
             spent = minimum_impulse(problem, limit, search=few)
-        optima.append(Optimum(key, problem, answer, limit, hopeless, bound, least, spent))
+        optima.append(Optimum(problem, answer, limit, hopeless, bound, least, spent))
     tell("done", 1.0)
     return OptimumStudy(scenario, options, tuple(optima))
 
 
-def _needs_a_limit(scenario: Scenario, options: OptimumOptions, keys: tuple[NormKey, ...]) -> None:
+def _needs_a_limit(scenario: Scenario, options: OptimumOptions, norms: Sequence[Norm]) -> None:
     """Refuse a question within a limit where no limit is given for any norm.
 
     Raises
@@ -75,24 +76,25 @@ def _needs_a_limit(scenario: Scenario, options: OptimumOptions, keys: tuple[Norm
     from ...scenario import ScenarioError
 
     asked = [name for name in ("least_time", "least_impulse") if getattr(options, name)]
-    if asked and all(limit_of(scenario, key) is None for key in keys):
+    if asked and all(limit_of(scenario, norm) is None for norm in norms):
         words = " and ".join(name.replace("_", " ") for name in asked)
         raise ScenarioError(
             f"{scenario.path.name}: optimum.torque_limit",
-            f"is needed for the {words} (norm {', '.join(keys)})",
+            f"is needed for the {words} (norm {', '.join(norm.key for norm in norms)})",
         )
 
 
-def norm_keys(scenario: Scenario, options: OptimumOptions) -> tuple[NormKey, ...]:
+def norms_asked(scenario: Scenario, options: OptimumOptions | None = None) -> tuple[Norm, ...]:
     """Norms to solve in, the scenario's own first."""
-    if options.norms:
-        return options.norms
+    if options is not None and options.norms:
+        return tuple(norm_of(scenario, key) for key in options.norms)
     if scenario.optimum.thrusters is not None:
-        return ("thrusters",)
-    return ("component", "euclidean") if scenario.optimum.norm == "component" else ("euclidean", "component")
+        return (norm_of(scenario, "thrusters"),)
+    own = NORMS[scenario.optimum.norm]
+    return (own, *(norm for norm in NORMS.values() if norm != own))
 
 
-def norm_of(scenario: Scenario, key: NormKey) -> Norm:
+def norm_of(scenario: Scenario, key: str) -> Norm:
     """The norm a key names.
 
     Raises
@@ -102,15 +104,13 @@ def norm_of(scenario: Scenario, key: NormKey) -> Norm:
     """
     from ...scenario import ScenarioError
 
-    if key == "euclidean":
-        return Euclidean()
-    if key == "component":
-        return LargestComponent()
+    if key in NORMS:
+        return NORMS[key]
     where = f"{scenario.path.name}: optimum.thrusters"
     if scenario.optimum.thrusters is None:
         raise ScenarioError(where, "is needed for the peak thruster force: give one axis a thruster")
     try:
-        return ThrusterAxes(tuple(scenario.optimum.thrusters))
+        return thrusters(scenario.optimum.thrusters)
     except ValueError as error:
         raise ScenarioError(where, str(error)) from None
 
@@ -176,9 +176,9 @@ def final_time(scenario: Scenario) -> Fraction:
     return scenario.horizon if scenario.tune.settle is None else scenario.tune.settle
 
 
-def limit_of(scenario: Scenario, key: NormKey) -> float | None:
+def limit_of(scenario: Scenario, norm: Norm) -> float | None:
     """Limit given for a norm: the optimum's own for the norm it names, else the scenario's."""
-    table = scenario.optimum
+    table, key = scenario.optimum, norm.key
     own = "thrusters" if table.thrusters is not None else table.norm
     if table.torque_limit is not None and key == own:
         return float(table.torque_limit)

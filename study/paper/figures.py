@@ -10,6 +10,7 @@ from typing import Any, final
 import numpy as np
 
 from ...models.laws import AdaptiveScaling, PersistenceFilter
+from ...models.norms import LARGEST_COMPONENT
 from ...optim.comparison.measure import LawRun, run_law
 from ...reports import parts
 from ...reports.record import Record
@@ -193,7 +194,7 @@ def _figure(body: BodyRuns, arrays: Arrays, group: str, name: str, title: str, u
 def _values(run: LawRun, name: str, t: np.ndarray) -> np.ndarray | None:
     state = run.trajectory.state(t)
     if name == "torque":
-        return np.asarray(np.abs(run.trajectory.signals(t).applied_torque).max(axis=0))
+        return LARGEST_COMPONENT.peak(run.trajectory.signals(t).applied_torque.T)
     if name == "b0":
         return np.asarray(state[0])
     if name == "angle":

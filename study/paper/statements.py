@@ -17,6 +17,7 @@ import numpy as np
 
 from ...models.ensemble import MetricOptions, simulate_ensemble
 from ...models.laws import AdaptiveScaling, PersistenceFilter
+from ...models.norms import LARGEST_COMPONENT
 from ...optim.comparison.measure import LawRun, Task
 
 CONVERGED = 1e-3
@@ -45,8 +46,10 @@ def statements(slow: LawRun, fast: LawRun, reference: LawRun) -> tuple[Statement
 
     Parameters
     ----------
-    slow, fast : adaptive scaling with the smaller and the larger gamma
-    reference : the persistence-filter law
+    slow, fast : LawRun
+        Adaptive scaling with the smaller and the larger gamma.
+    reference : LawRun
+        The persistence-filter law.
     """
     return (
         _lower_in_transient(slow, reference),
@@ -58,7 +61,7 @@ def statements(slow: LawRun, fast: LawRun, reference: LawRun) -> tuple[Statement
 
 
 def _lower_in_transient(slow: LawRun, reference: LawRun) -> Statement:
-    a, b = slow.peak("component"), reference.peak("component")
+    a, b = slow.peak(LARGEST_COMPONENT), reference.peak(LARGEST_COMPONENT)
     return Statement(
         "lower_in_transient",
         "adaptive peak torque below the persistence filter's in the transient",
@@ -83,7 +86,7 @@ _LATER = "adaptive torque above the persistence filter's later"
 
 
 def _gamma_raises_peak(slow: LawRun, fast: LawRun) -> Statement:
-    a, b = slow.peak("component"), fast.peak("component")
+    a, b = slow.peak(LARGEST_COMPONENT), fast.peak(LARGEST_COMPONENT)
     says = "larger gamma gives higher peaks"
     return Statement("gamma_peak", says, b > a, f"{a:.4g} N m, then {b:.4g} N m")
 
@@ -163,8 +166,8 @@ def survey(
         np.where(np.isnan(m.settling_time), np.inf, m.settling_time) for m in (slow, fast)
     )
     held = {
-        "lower_in_transient": slow.peak_component < reference.peak_component,
-        "gamma_peak": fast.peak_component > slow.peak_component,
+        "lower_in_transient": slow.peak[LARGEST_COMPONENT] < reference.peak[LARGEST_COMPONENT],
+        "gamma_peak": fast.peak[LARGEST_COMPONENT] > slow.peak[LARGEST_COMPONENT],
         "gamma_settling": fast_settling < slow_settling,
     }
     return tuple(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
+from ...models.norms import NORMS
 from ...models.types import Progress, silent
 from ...reports.join import join
 from ...reports.record import Record
@@ -75,7 +76,7 @@ def _front(scenario: Scenario, workers: int) -> Record:
         found = run_front(
             scenario,
             asked.front,
-            norm=asked.front_norm,
+            norm=NORMS[asked.front_norm],
             labels=asked.front_laws,
             evaluations=asked.front_evaluations,
             executor=executor,

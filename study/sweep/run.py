@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, final
 
-from ...optim.comparison.equal_terms import NormName
+from ...models.norms import NORMS, Norm
 from ...optim.comparison.measure import Task
 from ...optim.schedule_study import LeastOnTime, ScheduleCase, ScheduleFamily, least_on_time, study_schedules
 from ...optim.tuning.conditions import certified_floor
@@ -28,7 +28,7 @@ class ScheduleStudy:
 
     scenario: Scenario
     law: LawChoice
-    norm: str
+    norm: Norm
     time: Fraction
     cases: tuple[ScheduleCase, ...]
     least: tuple[LeastOnTime, ...]
@@ -38,7 +38,7 @@ def run_schedule_study(
     scenario: Scenario,
     *,
     law: str | None = None,
-    norm: NormName | None = None,
+    norm: Norm | None = None,
     executor: Executor | None = None,
 ) -> ScheduleStudy:
     """Study the schedules of [study] for one law of the scenario, in the norm of [optimum] or the given.
@@ -59,7 +59,7 @@ def run_schedule_study(
         )
     duty = scenario.study.duty_cycles or DEFAULT_DUTY
     time = scenario.optimum.final_time or scenario.horizon
-    built, task, norm = choice.build(), task_of(scenario), norm or scenario.optimum.norm
+    built, task, norm = choice.build(), task_of(scenario), norm or NORMS[scenario.optimum.norm]
     _require_windows_that_fit(scenario, task, periods, duty)
     cases = study_schedules(
         built, task, periods, duty, time=time, norm=norm, floor=certified_floor, executor=executor
@@ -114,7 +114,7 @@ def schedule_record(study: ScheduleStudy) -> Record:
         command=f"intermit sweep {study.scenario.path.name}",
         sections={"schedule_study": section},
         arrays=arrays,
-        options={"norm": study.norm, "time": float(study.time), "law": study.law.label},
+        options={"norm": study.norm.key, "time": float(study.time), "law": study.law.label},
     )
 
 
@@ -152,7 +152,7 @@ def _cases_table(study: ScheduleStudy) -> dict[str, Any]:
         }
         for case in study.cases
     ]
-    return parts.table("schedules", f"Periods and duty cycles, {study.norm} norm", columns, rows)
+    return parts.table("schedules", f"Periods and duty cycles, {study.norm.key} norm", columns, rows)
 
 
 def _least_table(study: ScheduleStudy) -> dict[str, Any]:

@@ -79,7 +79,7 @@ class TuningStudy(Shown):
         tried = f"{len(self.history.trials)} candidates simulated, {settled} of them settle in time."
         if self.peak is None or self.settling is None:
             return Summary(title, (f"No answer: {tuned.reason}.", tried))
-        found = f"Peak {self.peak:.6g} N m ({tuned.norm}), settled at {self.settling:.6g} s."
+        found = f"Peak {self.peak:.6g} N m ({tuned.norm.key}), settled at {self.settling:.6g} s."
         rows = [(name, f"{float(value):.9g}") for name, value in self.parameters.items()]
         return Summary(title, (found, tried), ((("parameter", "value"), rows),))
 
@@ -97,7 +97,7 @@ class TuningStudy(Shown):
             raise InputError(f"nothing to draw: {self.tuned.reason}")
         line = Line("least peak so far", (known + 1).astype(float), best[known])
         title = f"Search of {self.tuned.label}"
-        y = Axis(f"least peak, {self.tuned.norm}", "N m", log=True)
+        y = Axis(f"least peak, {self.tuned.norm.key}", "N m", log=True)
         return draw([Chart("search", title, Axis("candidates simulated"), y, (line,), "")])
 
     def to_dataframe(self) -> Any:

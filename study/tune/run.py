@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...models.laws import Law
-from ...optim.comparison.equal_terms import NormName
+from ...models.norms import EUCLIDEAN, LARGEST_COMPONENT, NORMS, Norm
 from ...optim.tuning.conditions import CertifiedConvergence
 from ...optim.tuning.front import Front, pareto_front
 from ...optim.tuning.search import DifferentialEvolution
@@ -27,7 +27,7 @@ def run_tuning(
     scenario: Scenario,
     *,
     settle: Fraction | None = None,
-    norm: NormName | None = None,
+    norm: Norm | None = None,
     law: str | None = None,
     seed: int | None = None,
 ) -> Tuned:
@@ -50,7 +50,7 @@ def run_tuning(
         built,
         task_of(scenario),
         settle=time,
-        norm=norm or scenario.tune.norm,
+        norm=norm or NORMS[scenario.tune.norm],
         label=label,
         ranges=scenario.tune.bounds,
         method=_method(scenario, seed),
@@ -68,7 +68,7 @@ def require_search_space(scenario: Scenario, law: Law) -> None:
 
 
 def run_front(
-    scenario: Scenario, settles: Sequence[Fraction], *, norm: NormName | None = None,
+    scenario: Scenario, settles: Sequence[Fraction], *, norm: Norm | None = None,
     labels: Sequence[str] = (), evaluations: int | None = None, executor: Executor | None = None,
 ) -> Front:  # fmt: skip
     """Tune the laws of these labels (all without any) for every settling time, beside what is possible.
@@ -88,7 +88,7 @@ def run_front(
         laws,
         task_of(scenario),
         settles,
-        norm=norm or scenario.tune.norm,
+        norm=norm or NORMS[scenario.tune.norm],
         method=_method(scenario, None, evaluations),
         certify={
             c.label: found for c in choices if (found := conditions_on(scenario, c)) is not None
@@ -138,8 +138,8 @@ def tuning_record(scenario: Scenario, tuned: Tuned) -> Record:
                 "name": "settling time",
                 "value": parts.figure_of("settling", run.figures.settling, digits=6, unit="s"),
             },
-            {"name": "peak, component", "value": newtons("component", run.peak("component"))},
-            {"name": "peak, Euclidean", "value": newtons("euclidean", run.peak("euclidean"))},
+            {"name": "peak, component", "value": newtons("component", run.peak(LARGEST_COMPONENT))},
+            {"name": "peak, Euclidean", "value": newtons("euclidean", run.peak(EUCLIDEAN))},
         ]
         head = [parts.column("name", "figure"), parts.column("value", "value")]
         tables.append(parts.table("figures", "Simulated again at full accuracy", head, figures))
@@ -173,7 +173,7 @@ def tuning_record(scenario: Scenario, tuned: Tuned) -> Record:
         },
         arrays=arrays,
         seeds={"search": tuned.history.seed},
-        options={"settle": float(tuned.settle), "norm": tuned.norm, "trials": len(tuned.history.trials)},
+        options={"settle": float(tuned.settle), "norm": tuned.norm.key, "trials": len(tuned.history.trials)},
     )
 
 
@@ -221,7 +221,7 @@ def front_record(scenario: Scenario, front: Front) -> Record:
     section = {
         "title": "Peak torque against settling time",
         "summary": "The optimum with its certified band, and the best each law reaches over its parameters.",
-        "tables": [parts.table("front", f"Pareto front, {front.norm} norm", columns, rows)],
+        "tables": [parts.table("front", f"Pareto front, {front.norm.key} norm", columns, rows)],
         "figures": [
             parts.figure(
                 "front", "Pareto front", parts.axis("settled by", "s"),
@@ -242,7 +242,7 @@ def front_record(scenario: Scenario, front: Front) -> Record:
         sections={"front": section},
         arrays=arrays,
         seeds={"search": scenario.tune.seed},
-        options={"settle": settles, "norm": front.norm},
+        options={"settle": settles, "norm": front.norm.key},
     )
 
 

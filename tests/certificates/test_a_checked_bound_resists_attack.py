@@ -8,6 +8,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from intermit.models.norms import EUCLIDEAN, LARGEST_COMPONENT
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import PiecewisePolynomial
 from intermit.optim.bounds.argument import PathArgument
@@ -19,9 +20,8 @@ from intermit.optim.bounds.potential.separation import Target, proved_separation
 from intermit.optim.bounds.sets.chart import arc_to_identity, chart_between
 from intermit.optim.bounds.sets.gauge import invariant_set
 from intermit.optim.bounds.sets.momentum_sets import UnitBall
-from intermit.optim.bounds.sets.polynomials import AXES
+from intermit.optim.bounds.sets.polynomials import AXES, RING
 from intermit.optim.bounds.windows.travel import WindowTravel, least_peak
-from intermit.optim.norms import Euclidean, LargestComponent
 from intermit.optim.peak import MultiStart, Refinement, minimum_peak
 from intermit.optim.problem import Terminal, TransferProblem, quaternion_from_axis_angle
 from intermit.verify import checker
@@ -50,7 +50,7 @@ def problem(norm, rate=(Fraction(0),) * 3):
 
 def bound_by_a_linear_potential(case):
     """A weak bound that takes no fitting: its certificate has all that the best one has."""
-    ball = isinstance(case.norm, Euclidean)
+    ball = case.norm.is_ball
     momenta = UnitBall(case.body) if ball else invariant_set(case.body, case.norm)
     windows = WindowTravel(case.window)
     departure = best_departure(case, momenta, windows)
@@ -60,7 +60,13 @@ def bound_by_a_linear_potential(case):
     along = {e: c / 100 for e, c in random_cubic(3, 4).items() if sum(e) > 1}
     along |= dict(zip(AXES, chart.direction, strict=True))
     found = proved_separation(
-        case.body, q, Target(), momenta, chart, along, BranchAndBound(tolerance=1e-2, most_boxes=20_000)
+        case.body,
+        q,
+        Target(),
+        momenta,
+        chart,
+        RING.polynomial(along),
+        BranchAndBound(tolerance=1e-2, most_boxes=20_000),
     )
     assert found.travel > 0
     path = PathBound(found.travel, ((1, found), (-1, None)))
@@ -74,10 +80,10 @@ def bound_by_a_linear_potential(case):
 
 
 CASES = {
-    "ball": problem(Euclidean()),
-    "invariant set": problem(LargestComponent()),
-    "ball, after a coast": problem(Euclidean(), TUMBLING),
-    "invariant set, after a coast": problem(LargestComponent(), TUMBLING),
+    "ball": problem(EUCLIDEAN),
+    "invariant set": problem(LARGEST_COMPONENT),
+    "ball, after a coast": problem(EUCLIDEAN, TUMBLING),
+    "invariant set, after a coast": problem(LARGEST_COMPONENT, TUMBLING),
 }
 
 
@@ -116,7 +122,7 @@ def stated_problem(document):
     """The transfer of a file, read by other code than the checker's."""
     data = document["parts"][0]["data"]
     place = data["transfer"]
-    norm = {"euclidean": Euclidean(), "component": LargestComponent()}[place["torque"]["by"]]
+    norm = {"euclidean": EUCLIDEAN, "component": LARGEST_COMPONENT}[place["torque"]["by"]]
     window = PiecewisePolynomial(
         tuple(Fraction(k) for k in place["window"]["knots"]),
         tuple(tuple(Fraction(c) for c in shape) for shape in place["window"]["shapes"]),
@@ -341,7 +347,7 @@ def points_of(gauge, count, seed):
 
 @pytest.mark.parametrize("boxed", [False, True])
 def test_ellipsoids_hold_the_set(boxed):
-    gauge = gauge_of(problem(LargestComponent()))
+    gauge = gauge_of(problem(LARGEST_COMPONENT))
     if boxed:
         gauge = gauge.with_box([Fraction(1), Fraction("1.1"), Fraction("1.2")])
     metrics, H = checker.Metrics(gauge), points_of(gauge, 4000, 1)
@@ -355,7 +361,7 @@ def test_ellipsoids_hold_the_set(boxed):
 
 
 def test_bounds_over_boxes_are_above_samples():
-    gauge = gauge_of(problem(LargestComponent())).with_box([Fraction(1)] * 3)
+    gauge = gauge_of(problem(LARGEST_COMPONENT)).with_box([Fraction(1)] * 3)
     metrics, H, unit = checker.Metrics(gauge), points_of(gauge, 300, 1), 2**checker.PEAK_BITS
     for seed in range(12):
         cubics = [

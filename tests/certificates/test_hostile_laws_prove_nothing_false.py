@@ -11,7 +11,8 @@ from intermit.models.closed_loop import close_loop
 from intermit.models.laws import Control, ControllerState, Law
 from intermit.models.laws.scaled import filter_rate, scaled_torque
 from intermit.models.rigid_body import RigidBody
-from intermit.models.time_signals import WindowClosing
+from intermit.models.schedule.polynomial import polynomial
+from intermit.models.time_signals import TimeSignal
 from intermit.verify.filter.recognise import follows_filter
 from intermit.verify.lyapunov import lyapunov_claims, sharp_condition, sharp_threshold
 from intermit.verify.verdict import Verdict
@@ -85,6 +86,16 @@ def test_a_weight_or_rate_that_is_not_positive_proves_nothing(name, value):
     assert all(claim.verdict is Verdict.UNDECIDED for claim in claims)
     with pytest.raises(ValueError, match="positive"):
         sharp_threshold(J1, weight=F(-1))
+
+
+@dataclass(frozen=True)
+class WindowClosing(TimeSignal):
+    """Closing time of the first window, s: a signal whose values the polynomials cannot know."""
+
+    name: str = "window_closing"
+
+    def on_piece(self, schedule, piece):
+        return polynomial(schedule.windows[0].off)
 
 
 def test_signals_at_values_that_never_occur_refute_nothing():

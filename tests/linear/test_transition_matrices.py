@@ -57,7 +57,11 @@ def test_simulation_agrees_with_a_general_integrator(schedule):
     states = plant(A, B, K, schedule).simulate(x0, times)
     other, x = [x0], x0
     for a, b in pairwise(times):
-        knots = [float(k) for k in schedule.knots_between(Fraction(a), Fraction(b))]
+        knots = [
+            a,
+            *(float(p.end) for p in schedule.pieces_between(Fraction(a), Fraction(b)) if p.end < b),
+            b,
+        ]
         for s, e in pairwise(knots):
             x = solve_ivp(
                 lambda t, y: (A - float(schedule.gain(t)) * B @ K) @ y, (s, e), x,

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from intermit.optim.norms import Euclidean, LargestComponent
+from intermit.models.norms import EUCLIDEAN, LARGEST_COMPONENT
 from intermit.optim.peak import MultiStart, SequentialConvex, minimum_peak
 from intermit.optim.peak.search.guess import first_guess
 from intermit.optim.peak.transcription.mesh import build_mesh
@@ -23,7 +23,7 @@ ONE = MultiStart(starts=1)
 TEN_CELLS = {"Euclidean": 0.018999822, "largest component": 0.011976125}
 """What ten equal cells a window give: a constant torque on each cannot follow the best torque."""
 CONVERGED = {"Euclidean": 0.01899931675, "largest component": 0.01197509699}
-NORMS = (Euclidean(), LargestComponent())
+NORMS = (EUCLIDEAN, LARGEST_COMPONENT)
 
 
 def cross(a, b):
@@ -36,7 +36,7 @@ class Extremal:
     def __init__(self, problem):
         self.problem, self.J = problem, problem.body.inertia
         self.J_inverse = np.linalg.inv(self.J)
-        self.euclidean = isinstance(problem.norm, Euclidean)
+        self.euclidean = problem.norm.is_ball
         q = problem.unit_attitude
         # costates along the quaternion itself do nothing: three directions across it are enough
         self.across = np.linalg.svd(q[None, :])[2][1:].T

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from intermit.optim.norms import Euclidean, LargestComponent
+from intermit.models.norms import EUCLIDEAN, LARGEST_COMPONENT
 from intermit.optim.peak import (
     MultiStart,
     NonlinearProgram,
@@ -28,7 +28,7 @@ ROUGH = Refinement(mesh_gap=1e-3)
 
 @pytest.fixture(scope="module")
 def answer():
-    return minimum_peak(paper_transfer(Euclidean(), horizon="19.22"), search=ONE, refinement=ROUGH)
+    return minimum_peak(paper_transfer(EUCLIDEAN, horizon="19.22"), search=ONE, refinement=ROUGH)
 
 
 def test_a_good_history_is_feasible(answer):
@@ -78,7 +78,7 @@ def test_independent_integration_agrees_with_a_textbook_one(answer):
     np.testing.assert_allclose(x, answer.flown.states[-1], atol=1e-8)
 
 
-@pytest.mark.parametrize("norm", [Euclidean(), LargestComponent(), TETRAHEDRON])
+@pytest.mark.parametrize("norm", [EUCLIDEAN, LARGEST_COMPONENT, TETRAHEDRON])
 def test_two_solvers_agree_to_one_in_a_million(norm):
     problem = paper_transfer(norm, horizon="27.22")
     mesh = build_mesh(problem.window, [6 if shape else 1 for shape in problem.window.shapes])

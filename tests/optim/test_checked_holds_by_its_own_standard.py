@@ -8,8 +8,8 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from intermit.models.norms import EUCLIDEAN, LARGEST_COMPONENT
 from intermit.models.schedule import PiecewisePolynomial
-from intermit.optim.norms import Euclidean, LargestComponent
 from intermit.optim.peak import MultiStart, Refinement, Standing, minimum_peak
 from intermit.optim.peak.search.resolution import SHORTEST, open_time, resolved
 from intermit.optim.problem import Terminal, TransferProblem, quaternion_from_axis_angle
@@ -34,13 +34,13 @@ def through(windows, horizon, *, norm=None, body=J1, angle=50.0, terminal=None):
         body=body,
         window=PiecewisePolynomial(tuple(knots), tuple(shapes)),
         attitude=quaternion_from_axis_angle([1, 1, 1], math.radians(angle)),
-        norm=norm or Euclidean(),
+        norm=norm or EUCLIDEAN,
         terminal=terminal or Terminal(),
     )
 
 
 @pytest.mark.parametrize("gap", ["1e-30", "1e-17", "6e-17", "1e-15", "1e-13", "1e-10"])
-@pytest.mark.parametrize("norm", [Euclidean(), LargestComponent()])
+@pytest.mark.parametrize("norm", [EUCLIDEAN, LARGEST_COMPONENT])
 def test_a_gap_of_no_length_changes_nothing(gap, norm):
     """Open time lost is under 1e-10 s of 8 s: the peak is that of touching windows within both mesh gaps."""
     rough = Refinement(mesh_gap=1e-5)

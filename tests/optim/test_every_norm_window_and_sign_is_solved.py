@@ -8,8 +8,8 @@ from importlib import import_module
 
 import numpy as np
 import pytest
+from intermit.models.norms import EUCLIDEAN, LARGEST_COMPONENT, thrusters
 from intermit.models.rigid_body import RigidBody
-from intermit.optim.norms import Euclidean, LargestComponent, ThrusterAxes
 from intermit.optim.peak import (
     MultiStart,
     NonlinearProgram,
@@ -24,7 +24,7 @@ from transfers import TETRAHEDRON, paper_transfer
 
 ONE, TWO = MultiStart(starts=1), MultiStart(starts=2)
 ROUGH = Refinement(mesh_gap=1e-5)
-AXES = ThrusterAxes.from_rows([[s if i == j else 0 for j in range(3)] for i in range(3) for s in (1, -1)])
+AXES = thrusters([[s if i == j else 0 for j in range(3)] for i in range(3) for s in (1, -1)])
 """One thruster each way along each body axis, arm 1 m."""
 
 
@@ -43,7 +43,7 @@ def tumbling(norm=None, *, time=1, size=1, **changes):
         horizon="11.22",
         attitude=(3, 1, -1, 2),
         rate=("0.08", "-0.05", "0.04"),
-        norm=norm or Euclidean(),
+        norm=norm or EUCLIDEAN,
         **changes,
     )
     window = replace(problem.window, knots=tuple(k * time for k in problem.window.knots))
@@ -52,7 +52,7 @@ def tumbling(norm=None, *, time=1, size=1, **changes):
 
 
 def test_six_thrusters_equal_the_largest_component():
-    assert peak(tumbling(AXES)) == pytest.approx(peak(tumbling(LargestComponent())), rel=2e-5)
+    assert peak(tumbling(AXES)) == pytest.approx(peak(tumbling(LARGEST_COMPONENT)), rel=2e-5)
 
 
 def test_removing_a_thruster_never_lowers_the_force():
@@ -62,11 +62,11 @@ def test_removing_a_thruster_never_lowers_the_force():
     np.testing.assert_allclose(force.max(), answer.peak, rtol=1e-12)
     torque = answer.history.base_torque
     np.testing.assert_allclose(torque, force @ TETRAHEDRON.control_matrix.T, atol=1e-15)
-    more = ThrusterAxes((*TETRAHEDRON.axes, (Fraction(-1), Fraction(-1), Fraction(-1))))
+    more = thrusters((*TETRAHEDRON.axes, (Fraction(-1), Fraction(-1), Fraction(-1))))
     assert peak(paper_transfer(more, horizon="11.22")) < 0.99 * answer.peak
 
 
-@pytest.mark.parametrize("norm", [Euclidean(), LargestComponent(), TETRAHEDRON], ids=lambda n: n.name)
+@pytest.mark.parametrize("norm", [EUCLIDEAN, LARGEST_COMPONENT, TETRAHEDRON], ids=lambda n: n.name)
 def test_profile_g_costs_more_than_the_full_window(norm):
     """W = g <= 1 with the same support, so that every torque within p g is within p."""
     full = peak(tumbling(norm))
@@ -99,7 +99,7 @@ def test_tumbling_optimum_scales_with_inertia_and_time():
     assert peak(replace(tumbling(time=Fraction(13)), rate=tumbling().rate)) > 1.01 * base / 169
 
 
-@pytest.mark.parametrize("norm", [Euclidean(), LargestComponent(), TETRAHEDRON], ids=lambda n: n.name)
+@pytest.mark.parametrize("norm", [EUCLIDEAN, LARGEST_COMPONENT, TETRAHEDRON], ids=lambda n: n.name)
 def test_both_solvers_alone_reach_the_same_refined_optimum(norm):
     problem = tumbling(norm)
     fast, reference = (peak(problem, solver=solver) for solver in (SequentialConvex(), NonlinearProgram()))
@@ -107,7 +107,7 @@ def test_both_solvers_alone_reach_the_same_refined_optimum(norm):
 
 
 def test_the_default_falls_back_on_the_reference(monkeypatch):
-    problem = paper_transfer(LargestComponent(), horizon="19.22")
+    problem = paper_transfer(LARGEST_COMPONENT, horizon="19.22")
     expected = peak(problem)
     module = import_module("intermit.optim.peak.search.minimum_peak")
     monkeypatch.setattr(module, "SequentialConvex", lambda: SequentialConvex(max_iterations=3))
@@ -132,7 +132,7 @@ def test_a_lower_peak_that_could_not_be_checked_is_told(monkeypatch):
         return answer if len(calls) > 1 else replace(answer, standing=Standing.UNDECIDED, reason="doubt")
 
     monkeypatch.setattr(finish, "__call__", doubtful)
-    problem = paper_transfer(Euclidean(), horizon="11.22")
+    problem = paper_transfer(EUCLIDEAN, horizon="11.22")
     answer = minimum_peak(problem, search=ONE, refinement=ROUGH)
     assert answer.standing is Standing.CHECKED
     assert "lower peak" in answer.reason
@@ -151,7 +151,7 @@ def test_an_optimum_that_failed_its_check_is_not_refined_again(monkeypatch):
         return replace(honest(self, candidate), standing=Standing.UNDECIDED, reason="doubt")
 
     monkeypatch.setattr(finish, "__call__", doubtful)
-    problem = paper_transfer(Euclidean(), horizon="11.22")
+    problem = paper_transfer(EUCLIDEAN, horizon="11.22")
     answer = minimum_peak(problem, search=MultiStart(starts=2), refinement=ROUGH)
     assert answer.standing is Standing.UNDECIDED
     assert len(answer.search.starts) == 4
@@ -160,7 +160,7 @@ def test_an_optimum_that_failed_its_check_is_not_refined_again(monkeypatch):
 
 
 def test_starts_seeds_and_local_optima_are_recorded():
-    answer = minimum_peak(tumbling(LargestComponent()), search=MultiStart(starts=3, seed=7), refinement=ROUGH)
+    answer = minimum_peak(tumbling(LARGEST_COMPONENT), search=MultiStart(starts=3, seed=7), refinement=ROUGH)
     starts = answer.search.starts
     assert [(s.sign, s.seed) for s in starts] == [(g, k) for k in (None, 7, 8) for g in (1, -1)]
     best = min(s.peak for s in starts)

@@ -7,9 +7,9 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from intermit.models.norms import LARGEST_COMPONENT
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import Hermite, Window, build_schedule
-from intermit.optim.norms import LargestComponent
 from intermit.optim.peak import MultiStart, NonlinearProgram, Refinement, SequentialConvex, Standing
 from intermit.optim.peak.search import finish as finishing
 from intermit.optim.peak.search.finish import Finish
@@ -31,7 +31,7 @@ def tumbling(rate=(0.12, 0.15, -0.2)):
     )
     attitude = quaternion_from_axis_angle([1, 2, 1], math.radians(70))
     return TransferProblem.through(
-        schedule, body=PLATE, horizon=14, attitude=attitude, rate=rate, norm=LargestComponent()
+        schedule, body=PLATE, horizon=14, attitude=attitude, rate=rate, norm=LARGEST_COMPONENT
     )
 
 
@@ -50,7 +50,7 @@ def test_no_cell_of_the_first_mesh_turns_far():
 def finish_with(limit, monkeypatch):
     """Refine one candidate whose fast solver never converges, under a limit of work."""
     monkeypatch.setattr(finishing, "MAX_FALLBACK_WORK", limit)
-    problem = paper_transfer(LargestComponent(), horizon="11.22")
+    problem = paper_transfer(LARGEST_COMPONENT, horizon="11.22")
     mesh = build_mesh(problem.window, [5 if shape else 1 for shape in problem.window.shapes])
     shooting = Shooting(scale(problem), mesh, 1)
     candidate = NonlinearProgram().solve(shooting, first_guess(shooting))

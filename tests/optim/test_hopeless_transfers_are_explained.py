@@ -6,8 +6,8 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from intermit.models.norms import EUCLIDEAN, LARGEST_COMPONENT, thrusters
 from intermit.models.schedule import Hermite, Window, build_schedule
-from intermit.optim.norms import Euclidean, LargestComponent, ThrusterAxes
 from intermit.optim.peak import MultiStart, Refinement, Standing, minimum_peak
 from intermit.optim.peak.search.explain import absorption_peak, explain, open_time, travel_peak
 from intermit.optim.problem import Terminal, TransferProblem, WindowProfile
@@ -50,7 +50,7 @@ def test_a_start_at_rest_at_the_target_needs_nothing():
 
 
 @pytest.mark.parametrize("profile", list(WindowProfile))
-@pytest.mark.parametrize("norm", [Euclidean(), LargestComponent()])
+@pytest.mark.parametrize("norm", [EUCLIDEAN, LARGEST_COMPONENT])
 def test_the_absorption_argument_is_a_bound(norm, profile):
     """The least peak found is never below what the momentum alone needs; the sentence names both."""
     problem = tumbling(norm, profile=profile)
@@ -65,7 +65,7 @@ def test_the_absorption_argument_is_a_bound(norm, profile):
     assert explain(problem, 1.1 * needs) is None
 
 
-@pytest.mark.parametrize("norm", [Euclidean(), LargestComponent()])
+@pytest.mark.parametrize("norm", [EUCLIDEAN, LARGEST_COMPONENT])
 def test_the_travel_argument_is_a_bound(norm):
     for terminal in (Terminal(), Terminal(attitude=Fraction("0.1"), rate=Fraction("0.01"))):
         problem = paper_transfer(norm, horizon="11.22", terminal=terminal)
@@ -78,12 +78,12 @@ def test_the_travel_argument_is_a_bound(norm):
 
 
 def test_open_time_is_exact():
-    problem = paper_transfer(Euclidean())
+    problem = paper_transfer(EUCLIDEAN)
     assert open_time(problem) == 7 * Fraction("3.21")
 
 
 def test_a_missing_direction_is_named_after_a_failed_search():
-    one_way = ThrusterAxes.from_rows([[1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    one_way = thrusters([[1, 0, 0], [0, 1, 0], [0, 0, 1]])
     problem = paper_transfer(one_way, horizon="11.22")
     answer = minimum_peak(problem, search=ONE, refinement=Refinement(cells=8))
     assert answer.standing is Standing.UNDECIDED

@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from intermit.optim.norms import Euclidean, LargestComponent
+from intermit.models.norms import EUCLIDEAN, LARGEST_COMPONENT
 from intermit.optim.peak import (
     MultiStart,
     Refinement,
@@ -52,7 +52,7 @@ def found(problem, limit, **options):
 @pytest.mark.parametrize("limit", [0.14, 0.3, 10.0])
 @pytest.mark.parametrize("axis", [(0, 0, 1), (1, 2, 2)])
 def test_unit_inertia_is_the_closed_form(limit, axis):
-    least = found(open_transfer(TURN, axis, Fraction(6), Euclidean()), limit)
+    least = found(open_transfer(TURN, axis, Fraction(6), EUCLIDEAN), limit)
     assert least.impulse == pytest.approx(bang_off_bang(limit), rel=2e-6)
     assert least.impulse >= bang_off_bang(limit) * (1 - 1e-9)
     first = least.impulse / limit / 2
@@ -60,14 +60,14 @@ def test_unit_inertia_is_the_closed_form(limit, axis):
     assert times == pytest.approx([first, TIME - first], abs=1e-4 * TIME)
 
 
-@pytest.mark.parametrize("norm", [Euclidean(), LargestComponent()])
+@pytest.mark.parametrize("norm", [EUCLIDEAN, LARGEST_COMPONENT])
 def test_torque_is_full_or_off_but_for_the_cells_of_a_switch(norm):
     problem = paper_transfer(norm, horizon="27.22")
     limit = 2 * minimum_peak(problem, search=ONE, refinement=ROUGH).peak
     least = found(problem, limit)
     history = least.answer.history
     control = np.abs(history.control[history.open])
-    share = (np.linalg.norm(control, axis=1) if isinstance(norm, Euclidean) else control) / limit
+    share = (np.linalg.norm(control, axis=1) if norm.is_ball else control) / limit
     between = (share > 1e-4) & (share < 1 - 1e-4)
     length = np.diff(history.edges)[history.open]
     held = between * (length if share.ndim == 1 else length[:, None])
@@ -77,7 +77,7 @@ def test_torque_is_full_or_off_but_for_the_cells_of_a_switch(norm):
     assert (share < 1e-4).any()
 
 
-@pytest.mark.parametrize("norm", [Euclidean(), LargestComponent(), TETRAHEDRON])
+@pytest.mark.parametrize("norm", [EUCLIDEAN, LARGEST_COMPONENT, TETRAHEDRON])
 def test_more_limit_or_more_time_never_costs_impulse(norm):
     problem = paper_transfer(norm, horizon="19.22")
     peak = minimum_peak(problem, search=ONE, refinement=ROUGH)
@@ -90,7 +90,7 @@ def test_more_limit_or_more_time_never_costs_impulse(norm):
 
 def test_never_below_what_the_path_needs():
     """|J w| is at most half the impulse, whatever the limit, and its integral at least Jmin angle."""
-    problem = paper_transfer(Euclidean(), horizon="27.22")
+    problem = paper_transfer(EUCLIDEAN, horizon="27.22")
     least = found(problem, 1.0, refinement=ROUGH)
     floor = 2 * problem.body.principal_inertias[0] * problem.angle / float(problem.horizon)
     assert least.impulse > floor
@@ -102,7 +102,7 @@ def test_scaling_laws():
 
     def impulse(size, time):
         J = [[2 * size, 0, 0], [0, 3 * size, 0], [0, 0, Fraction(5, 2) * size]]
-        problem = open_transfer(1.9, (1, -1, 2), 5 * time, Euclidean(), body=RigidBody.from_rows(J))
+        problem = open_transfer(1.9, (1, -1, 2), 5 * time, EUCLIDEAN, body=RigidBody.from_rows(J))
         return found(problem, float(size / time**2), refinement=ROUGH).impulse
 
     base = impulse(Fraction(1), Fraction(1))
@@ -125,7 +125,7 @@ def test_random_transfers_meet_the_standard(number):
 
 
 def test_a_limit_below_the_least_peak_is_said_so():
-    problem = paper_transfer(Euclidean(), horizon="11.22")
+    problem = paper_transfer(EUCLIDEAN, horizon="11.22")
     least = minimum_impulse(problem, 1e-3, search=ONE, refinement=ROUGH)
     assert not least.found
     assert math.isinf(least.impulse)
@@ -135,12 +135,12 @@ def test_a_limit_below_the_least_peak_is_said_so():
 
 
 def test_a_start_at_the_target_spends_nothing():
-    problem = paper_transfer(Euclidean(), horizon="11.22")
+    problem = paper_transfer(EUCLIDEAN, horizon="11.22")
     problem = replace(problem, attitude=tuple(Fraction(x) for x in (1, 0, 0, 0)))
     assert minimum_impulse(problem, 1.0, search=ONE).impulse == 0.0
 
 
-@pytest.mark.parametrize("norm", [Euclidean(), LargestComponent(), TETRAHEDRON])
+@pytest.mark.parametrize("norm", [EUCLIDEAN, LARGEST_COMPONENT, TETRAHEDRON])
 def test_the_gap_and_the_residual_catch_a_transfer_that_wastes(norm):
     """The least-peak transfer is feasible within the limit, but no one may call its impulse least."""
     problem = paper_transfer(norm, horizon="19.22")

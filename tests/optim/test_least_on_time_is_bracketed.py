@@ -3,6 +3,7 @@
 from fractions import Fraction as F
 
 import pytest
+from intermit.models.norms import EUCLIDEAN
 from intermit.optim.comparison.measure import Task
 from intermit.optim.schedule_study import ScheduleFamily, least_on_time
 from intermit.optim.tuning.conditions import certified_floor
@@ -10,7 +11,7 @@ from intermit.optim.tuning.front import best_possible
 from problems import J1, PERSISTENCE, TILTED, paper_schedule
 
 TASK = Task(J1, paper_schedule(as_printed=False), tuple(TILTED), (F(0),) * 3, F(1, 100), F(1, 100), F(56))
-QUESTION = {"time": F(28), "norm": "euclidean", "floor": certified_floor, "resolution": F(1)}
+QUESTION = {"time": F(28), "norm": EUCLIDEAN, "floor": certified_floor, "resolution": F(1)}
 
 
 @pytest.mark.slow
@@ -23,7 +24,7 @@ def test_bracket_holds_and_names_what_fails():
     assert answer.optimum <= limit
     assert "torque limit" in answer.limiting
     below = ScheduleFamily().task(TASK, F(8), answer.fails)
-    assert best_possible(below, F(28), "euclidean").optimum > limit
+    assert best_possible(below, F(28), EUCLIDEAN).optimum > limit
 
 
 @pytest.mark.slow

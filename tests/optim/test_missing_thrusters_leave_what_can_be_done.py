@@ -7,9 +7,9 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from intermit.models.norms import EUCLIDEAN, thrusters
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import Hermite, Window, build_schedule
-from intermit.optim.norms import Euclidean, ThrusterAxes
 from intermit.optim.peak import MultiStart, NonlinearProgram, Refinement, Standing, minimum_peak
 from intermit.optim.peak.search.guess import first_guess
 from intermit.optim.peak.search.minimum_peak import coarse_mesh
@@ -27,7 +27,7 @@ ROUGH = Refinement(mesh_gap=1e-4)
 def turn(rows, axis, degrees, *, body=UNIT, horizon=12):
     schedule = build_schedule([Window(Fraction(0), Fraction(horizon))], Hermite())
     attitude = quaternion_from_axis_angle(axis, math.radians(degrees))
-    norm = ThrusterAxes.from_rows(rows)
+    norm = thrusters(rows)
     return TransferProblem.through(schedule, body=body, horizon=horizon, attitude=attitude, norm=norm)
 
 
@@ -60,7 +60,7 @@ def test_one_pair_alone_never_turns_about_another_axis():
 @pytest.mark.parametrize("rows", [NO_DOWN[:2], NO_DOWN[:4], [[1, 2, 0], [-3, 1, 0], [0, -1, 0]]])
 def test_the_peak_of_a_flat_set_is_its_least_largest_force(rows):
     """Against a linear program; a torque out of the plane is beyond any force."""
-    norm = ThrusterAxes.from_rows(rows)
+    norm = thrusters(rows)
     B, count = norm.control_matrix, len(rows)
     rng = np.random.default_rng(5)
     for force in rng.uniform(0, 1, (12, count)):
@@ -93,7 +93,7 @@ def test_an_inertia_of_one_two_three_through_many_windows():
         body=RigidBody(np.diag([1.0, 2.0, 3.0])),
         horizon="25.2",
         attitude=quaternion_from_axis_angle([1, 1, 1], math.radians(30)),
-        norm=Euclidean(),
+        norm=EUCLIDEAN,
     )
     answer = minimum_peak(problem, search=MultiStart(starts=1), refinement=ROUGH)
     assert answer.standing is Standing.CHECKED, answer.reason

@@ -6,7 +6,7 @@ import pytest
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import Window, build_schedule
 from intermit.models.schedule.profiles import Hermite
-from intermit.optim import MultiStart, ThrusterAxes, TransferProblem, minimum_peak
+from intermit.optim import MultiStart, TransferProblem, minimum_peak
 from intermit.optim.peak import Standing
 from intermit.optim.problem import quaternion_from_axis_angle
 
@@ -20,7 +20,7 @@ def solve(axis, degrees, thrusters=HALF_EQUIPPED, starts=1):
         body=body,
         horizon=20,
         attitude=quaternion_from_axis_angle(axis, degrees * 3.141592653589793 / 180),
-        norm=ThrusterAxes(tuple(tuple(F(x) for x in axis) for axis in thrusters)),
+        norm=thrusters(tuple(tuple(F(x) for x in axis) for axis in thrusters)),
     )
     return minimum_peak(problem, search=MultiStart(starts=starts))
 

@@ -7,9 +7,9 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from intermit.models.norms import EUCLIDEAN, LARGEST_COMPONENT, thrusters
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import Hermite, Window, build_schedule
-from intermit.optim.norms import Euclidean, LargestComponent, ThrusterAxes
 from intermit.optim.problem import (
     Terminal,
     TransferProblem,
@@ -54,7 +54,7 @@ def test_refusals_name_the_fault():
     with pytest.raises(ValueError, match=r"in \[0, 1\)"):
         Terminal(attitude=Fraction(2))
     with pytest.raises(ValueError, match="must give a torque"):
-        ThrusterAxes.from_rows([[0, 0, 0], [0, 0, 0]])
+        thrusters([[0, 0, 0], [0, 0, 0]])
 
 
 def test_angle_is_that_of_the_attitude_not_of_the_sign():
@@ -67,20 +67,20 @@ def test_angle_is_that_of_the_attitude_not_of_the_sign():
 
 def test_six_thrusters_along_the_axes_are_the_cube():
     rows = [[s if i == j else 0 for j in range(3)] for i in range(3) for s in (1, -1)]
-    thrusters = ThrusterAxes.from_rows(rows)
+    set_of = thrusters(rows)
     torque = np.random.default_rng(1).normal(size=(200, 3))
-    assert thrusters.spans_all_directions
-    np.testing.assert_allclose(thrusters.peak(torque), LargestComponent().peak(torque), rtol=1e-14)
-    np.testing.assert_allclose(thrusters.support(torque), LargestComponent().support(torque), rtol=1e-14)
+    assert set_of.spans_all_directions
+    np.testing.assert_allclose(set_of.peak(torque), LARGEST_COMPONENT.peak(torque), rtol=1e-14)
+    np.testing.assert_allclose(set_of.support(torque), LARGEST_COMPONENT.support(torque), rtol=1e-14)
 
 
 def test_four_canted_thrusters_match_a_linear_program():
     from scipy.optimize import linprog
 
     rows = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]
-    thrusters = ThrusterAxes.from_rows(rows)
-    assert thrusters.spans_all_directions
-    B = thrusters.control_matrix
+    set_of = thrusters(rows)
+    assert set_of.spans_all_directions
+    B = set_of.control_matrix
     for torque in np.random.default_rng(2).normal(size=(30, 3)):
         lp = linprog(
             np.r_[np.zeros(4), 1.0],
@@ -89,17 +89,17 @@ def test_four_canted_thrusters_match_a_linear_program():
             A_eq=np.c_[B, np.zeros(3)],
             b_eq=torque,
         )
-        assert float(thrusters.peak(torque)) == pytest.approx(lp.fun, rel=1e-9)
+        assert float(set_of.peak(torque)) == pytest.approx(lp.fun, rel=1e-9)
 
 
 def test_one_sided_thrusters_that_push_one_way_only_say_so():
-    thrusters = ThrusterAxes.from_rows([[1, 0, 0], [0, 1, 0], [0, 0, 1]])
-    assert not thrusters.spans_all_directions
-    assert math.isinf(float(thrusters.peak([-1.0, 0.0, 0.0])))
-    assert float(thrusters.peak([1.0, 2.0, 0.5])) == pytest.approx(2.0)
+    set_of = thrusters([[1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    assert not set_of.spans_all_directions
+    assert math.isinf(float(set_of.peak([-1.0, 0.0, 0.0])))
+    assert float(set_of.peak([1.0, 2.0, 0.5])) == pytest.approx(2.0)
 
 
-@pytest.mark.parametrize("norm", [Euclidean(), LargestComponent()])
+@pytest.mark.parametrize("norm", [EUCLIDEAN, LARGEST_COMPONENT])
 def test_peak_and_support_are_polar(norm):
     rng = np.random.default_rng(3)
     torque, direction = rng.normal(size=(2, 500, 3))

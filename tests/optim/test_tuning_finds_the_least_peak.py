@@ -4,6 +4,7 @@ from fractions import Fraction as F
 
 import numpy as np
 import pytest
+from intermit.models.norms import LARGEST_COMPONENT
 from intermit.optim.comparison.measure import Task, run_law
 from intermit.optim.tuning.evaluate import EnsembleRuns
 from intermit.optim.tuning.search import DifferentialEvolution, Outcomes
@@ -34,10 +35,10 @@ def test_space_is_exact_and_inverts():
 def test_evaluation_agrees_with_an_accurate_run():
     """The ensemble's peak and verdict on settling are those of the single accurate run."""
     candidates = [{"k0": F("0.2")}, {"k0": F("0.3")}, {"k0": F("0.02")}]
-    outcomes = EnsembleRuns(ADAPTIVE, task(), settle=SETTLE, norm="component")(candidates)
+    outcomes = EnsembleRuns(ADAPTIVE, task(), settle=SETTLE, norm=LARGEST_COMPONENT)(candidates)
     for candidate, peak, excess in zip(candidates, outcomes.peak, outcomes.excess, strict=True):
         run = run_law("x", with_parameters(ADAPTIVE, candidate), task())
-        assert peak == pytest.approx(run.peak("component"), rel=1e-4)
+        assert peak == pytest.approx(run.peak(LARGEST_COMPONENT), rel=1e-4)
         assert (excess <= 0) == (run.figures.settling is not None and run.figures.settling <= SETTLE)
 
 
@@ -58,14 +59,16 @@ def test_search_repeats_by_seed_and_returns_the_least():
 
 
 def test_conditions_turn_candidates_down():
-    tuned = tune(ADAPTIVE, task(), settle=SETTLE, norm="component", method=QUICK, certify=lambda _: "no")
+    tuned = tune(
+        ADAPTIVE, task(), settle=SETTLE, norm=LARGEST_COMPONENT, method=QUICK, certify=lambda _: "no"
+    )
     assert tuned.law is None
     assert tuned.run(task()) is None
     assert {reason for _, reason in tuned.refused} == {"no"}
 
 
 def test_impossible_settling_time_is_said_so():
-    tuned = tune(ADAPTIVE, task(), settle=F(1, 2), norm="component", method=QUICK)
+    tuned = tune(ADAPTIVE, task(), settle=F(1, 2), norm=LARGEST_COMPONENT, method=QUICK)
     assert tuned.law is None
     assert "no candidate settles" in tuned.reason
 
@@ -74,7 +77,7 @@ def test_impossible_settling_time_is_said_so():
 @pytest.mark.parametrize(("law", "most"), [(ADAPTIVE, 2.44), (PERSISTENCE, 5.5)])
 def test_tuned_laws_reach_the_known_peaks(law, most):
     """J1, 120 deg about (1, 1, 1) from rest, tolerance 1e-2, settled by 28 s, largest component."""
-    tuned = tune(law, task(), settle=SETTLE, norm="component")
+    tuned = tune(law, task(), settle=SETTLE, norm=LARGEST_COMPONENT)
     run = tuned.run(task())
     assert run.figures.settling <= SETTLE
-    assert run.peak("component") <= most
+    assert run.peak(LARGEST_COMPONENT) <= most

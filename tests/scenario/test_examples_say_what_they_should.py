@@ -24,7 +24,7 @@ def test_the_paper_is_exact():
     assert scenario.body.exact_inertia[0] == (Fraction("3.05"), Fraction("0.14"), Fraction("0.05"))
     assert scenario.schedule.square_integral(Fraction(0), Fraction(8)) == Fraction("2.198")
     assert scenario.schedule_choice.overruns_as_printed
-    assert scenario.laws[0].parameter("lambda") == Fraction("0.525")
+    assert dict(scenario.laws[0].parameters)["lambda"] == Fraction("0.525")
 
 
 def test_unstated_data_are_stated_once():

@@ -293,7 +293,7 @@ def test_labels_are_unique(workshop):
     law = SOUND_LAW + "\n[[law]]\n" + SOUND_LAW
     assert "is used twice" in workshop.complaint(law=law)
     scenario = workshop.load(law=SOUND_LAW + '\n[[law]]\nlabel = "other"\n' + SOUND_LAW)
-    assert scenario.law("other").parameter("R0") == 1
+    assert dict(scenario.law("other").parameters)["R0"] == 1
     with pytest.raises(ScenarioError, match="has no law labelled 'third'"):
         scenario.law("third")
 

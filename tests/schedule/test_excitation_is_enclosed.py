@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from intermit.models.schedule import Hermite, PiecewisePolynomial, Ramps, Schedule, Window, build_schedule
 from intermit.models.schedule.polynomial import polynomial
-from intermit.verify.exact.polynomial_range import least_value
+from intermit.verify.exact.bernstein import least_value
 from intermit.verify.schedule import excitation as module
 from intermit.verify.schedule.excitation import excitation, excitation_claim
 from intermit.verify.schedule.moving_integral import MovingIntegral

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from intermit.models.laws import Control, Expression, Law, PlantSymbols, QuaternionPD, TimeSymbols
 from intermit.models.lowering import UnknownOperationError
+from intermit.models.norms import EUCLIDEAN
 from intermit.models.simulation import DOP853, simulate
 from intermit.verify.filter.question import FloorQuestion
 from intermit.verify.filter.torque_excess import refuted_limit, start_inside
@@ -27,7 +28,7 @@ PD = QuaternionPD(F("0.2"), F(1))
 LAWS = [PERSISTENCE, ADAPTIVE, PD]
 QUESTION = FloorQuestion(
     law=PERSISTENCE, body=J1, schedule=SCHEDULE, max_angle_deg=F(120), torque_limit=F(1),
-    torque_norm="euclidean",
+    torque_norm=EUCLIDEAN,
 )  # fmt: skip
 
 

@@ -19,7 +19,10 @@ def excitation_certificate(schedule: Schedule, length: Fraction) -> Certificate 
 
     Parameters
     ----------
-    length : T, s
+    schedule : Schedule
+        The schedule whose g it is about.
+    length : Fraction
+        T, s.
     """
     if len(schedule.profile.shapes) > MAX_PIECES:
         return None

@@ -47,6 +47,17 @@ def write_lines(symbols: Mapping[str, Expression], results: Sequence[Expression]
         If an expression uses another operation (a root, a sine, a case distinction), a constant that
         is not finite, or a symbol that is none of these.
     """
+    return _lines(algebraic_program(symbols, results), list(symbols))
+
+
+def algebraic_program(symbols: Mapping[str, Expression], results: Sequence[Expression]) -> Program:
+    """Program of expressions of these symbols, each an argument of its own.
+
+    Raises
+    ------
+    NotAlgebraicError
+        As `write_lines`.
+    """
     known = {symbol.element_hash() for symbol in symbols.values()}
     strays = sorted({s.name() for s in ca.symvar(ca.veccat(*results)) if s.element_hash() not in known})
     if strays:
@@ -56,7 +67,10 @@ def write_lines(symbols: Mapping[str, Expression], results: Sequence[Expression]
     strange = sorted(program.operations - OPERATIONS)
     if strange:
         raise NotAlgebraicError(f"the expression uses {', '.join(strange)}; only + - * / can be proved here")
-    return _lines(program, list(symbols))
+    for constant in program.constants.values():
+        if not isfinite(constant):
+            raise NotAlgebraicError(f"the expression holds the constant {constant}")
+    return program
 
 
 def _lines(program: Program, names: Sequence[str]) -> Lines:
@@ -64,8 +78,6 @@ def _lines(program: Program, names: Sequence[str]) -> Lines:
     lines: list[str] = []
     for v, constant in program.constants.items():
         name[v] = f"v{v}"
-        if not isfinite(constant):
-            raise NotAlgebraicError(f"the expression holds the constant {constant}")
         lines.append(f"v{v} = const {exact_text(Fraction(constant))}")
     for step in program.steps:
         name[step.result] = f"v{step.result}"

@@ -87,14 +87,9 @@ def square_root(value: Fraction) -> tuple[Fraction, Fraction]:
     return Fraction(root, 2**ROOT_BITS), Fraction(root + 1, 2**ROOT_BITS)
 
 
-def length_above(values: Iterable[Fraction]) -> Fraction:
-    """Return a multiple of 2^-96 >= the Euclidean length."""
-    return square_root(sum((x * x for x in values), Fraction(0)))[1]
-
-
-def length_below(values: Iterable[Fraction]) -> Fraction:
-    """Return a multiple of 2^-96 <= the Euclidean length."""
-    return square_root(sum((x * x for x in values), Fraction(0)))[0]
+def length(values: Iterable[Fraction]) -> tuple[Fraction, Fraction]:
+    """Enclose a Euclidean length between two multiples of 2^-96."""
+    return square_root(sum((x * x for x in values), Fraction(0)))
 
 
 def exponential_above(value: Fraction) -> Fraction:

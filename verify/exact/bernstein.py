@@ -7,7 +7,8 @@ proves p >= 0 on [0, 1]. Coefficients are rationals (python-flint), so nothing i
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 from itertools import pairwise
@@ -17,6 +18,7 @@ from typing import final
 from flint import fmpq, fmpq_poly
 
 from ...models.schedule import polynomial as poly
+from .bisection import best_first
 from .rational import fraction, rational
 
 
@@ -175,3 +177,70 @@ def _least(controls: list[int], depth: int) -> tuple[int, int]:
     n = len(controls) - 1
     shared = max(power for _, power in halves)
     return min(value << (shared - power) for value, power in halves), shared + n
+
+
+@final
+@dataclass(frozen=True)
+class Minimum:
+    """low <= least value <= high; `high` is attained by polynomial `index` at `argument`, exactly.
+
+    Attributes
+    ----------
+    splits : int
+        Bisections that were needed.
+    """
+
+    low: Fraction
+    high: Fraction
+    index: int
+    argument: Fraction
+    splits: int
+
+
+Part = tuple[Fraction, int, Fraction, Fraction, list[int], int]
+"""Lower bound, number of the polynomial, start, width, coefficients times a factor, the factor."""
+
+
+def least_value(polynomials: Iterable[poly.Coefficients], tolerance: Fraction) -> Minimum:
+    """Enclose the least value that any of the polynomials takes on [0, 1].
+
+    Branch and bound: the least Bernstein coefficient bounds a polynomial from below, its end values
+    from above; the part with the least bound is halved until the bounds meet to `tolerance`.
+
+    Parameters
+    ----------
+    polynomials : iterable of coefficient tuples, lowest power first; at least one
+    tolerance : Fraction
+        Largest high - low, > 0.
+    """
+    best: tuple[Fraction, int, Fraction] | None = None
+    splits = -1
+
+    def part(index: int, start: Fraction, width: Fraction, controls: list[int], factor: int) -> Part:
+        nonlocal best
+        for control, argument in ((controls[0], start), (controls[-1], start + width)):
+            value = Fraction(control, factor)
+            if best is None or value < best[0]:
+                best = value, index, argument
+        return Fraction(min(controls), factor), index, start, width, controls, factor
+
+    def halves(whole: Part) -> Iterator[Part]:
+        _, index, start, width, controls, factor = whole
+        factor <<= len(controls) - 1
+        for side, half in enumerate(split(controls)):
+            yield part(index, start + side * width / 2, width / 2, half, factor)
+
+    def enough(least: Part) -> bool:
+        nonlocal splits
+        splits += 1
+        assert best is not None
+        return best[0] - least[0] <= tolerance
+
+    roots = [
+        part(index, Fraction(0), Fraction(1), *_over_one(poly.bernstein(p)))
+        for index, p in enumerate(polynomials)
+    ]
+    if best is None:
+        raise ValueError("expected at least one polynomial")
+    parts = best_first(roots, halves, enough)
+    return Minimum(min(parts[0][0], best[0]), best[0], best[1], best[2], splits)

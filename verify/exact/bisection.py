@@ -1,12 +1,16 @@
-"""The one bisection loop: prove a bound on a box by halving where it is not yet proved."""
+"""Bisection: of an interval where something ceases to hold, and of boxes until a bound is proved."""
 
 from __future__ import annotations
 
 import heapq
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from fractions import Fraction
 from itertools import count
-from typing import final
+from typing import Any, TypeVar, final
+
+T = TypeVar("T", float, Fraction)
+Bounded = TypeVar("Bounded", bound=tuple[Any, ...])
 
 Box = tuple[tuple[float, float], ...]
 """One (low, high) pair a coordinate."""
@@ -60,19 +64,77 @@ def minimum_below(
     Parameters
     ----------
     bound : callable
-        A proved lower bound of the function over a given box; it must not fall when a box shrinks
-        for the loop to make headway, but soundness does not need that.
-    box : the box to cover
-    target : stop once this is proved
-    max_evaluations : stop after this many calls of `bound`
-    scale : one positive length a coordinate, in which widths are compared
+        A proved lower bound of the function over a given box; it must not fall when a box shrinks for the
+        loop to make headway, but soundness does not need that.
+    box : Box
+        The box to cover.
+    target : float
+        Stop once this is proved.
+    max_evaluations : int
+        Stop after this many calls of `bound`.
+    scale : tuple[float, ...], optional
+        One positive length a coordinate, in which widths are compared.
+    """
+    evaluations = 0
+
+    def bounded(part: Box) -> tuple[float, Box]:
+        nonlocal evaluations
+        evaluations += 1
+        return bound(part), part
+
+    parts = best_first(
+        [bounded(box)],
+        lambda worst: map(bounded, halve(worst[1], scale)),
+        lambda worst: worst[0] >= target or evaluations + 2 > max_evaluations,
+    )
+    value = parts[0][0]
+    return LowerBound(value, tuple(part for _, part in parts), evaluations, value >= target)
+
+
+def best_first(
+    parts: Iterable[Bounded],
+    split: Callable[[Bounded], Iterable[Bounded]],
+    enough: Callable[[Bounded], bool],
+) -> list[Bounded]:
+    """Split the part with the least bound, again and again: the one loop of branch and bound.
+
+    Parameters
+    ----------
+    parts : tuples whose first entry is a lower bound of something on them; at least one
+    split : returns the parts of a part
+    enough : whether to stop, asked of the part with the least bound
+
+    Returns
+    -------
+    list
+        The parts, one with the least bound first.
     """
     tie = count()
-    heap = [(bound(box), next(tie), box)]
-    evaluations = 1
-    while heap[0][0] < target and evaluations + 2 <= max_evaluations:
-        _, _, worst = heapq.heappop(heap)
-        for half in halve(worst, scale):
-            heapq.heappush(heap, (bound(half), next(tie), half))
-        evaluations += 2
-    return LowerBound(heap[0][0], tuple(b for _, _, b in heap), evaluations, heap[0][0] >= target)
+    heap = [(part[0], next(tie), part) for part in parts]
+    heapq.heapify(heap)
+    while not enough(heap[0][2]):
+        for part in split(heapq.heappop(heap)[2]):
+            heapq.heappush(heap, (part[0], next(tie), part))
+    return [part for _, _, part in heap]
+
+
+def bisected(
+    holds: Callable[[T], bool], low: T, high: T, *, steps: int | None = None, relative: Fraction = Fraction(0)
+) -> tuple[T, T]:
+    """Halve an interval between a point where something holds and one where it does not.
+
+    Monotony only guides: the question was answered at both ends that are returned.
+
+    Parameters
+    ----------
+    holds : the question
+    low, high : it holds at `low` and not at `high`
+    steps : most halvings; None for as many as `relative` takes
+    relative : stop once the interval is no longer than this share of its upper end
+    """
+    done = 0
+    while done != steps and high - low > relative * high:
+        middle = (low + high) / 2
+        low, high = (middle, high) if holds(middle) else (low, middle)
+        done += 1
+    return low, high

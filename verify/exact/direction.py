@@ -22,10 +22,11 @@ def rational_direction(vector: Sequence[float], *, denominator: int | None = Non
 
     Parameters
     ----------
-    vector : (n,), of length 1 up to rounding
+    vector : Sequence[float]
+        (n,), of length 1 up to rounding.
     denominator : int or None
-        Bound of the denominators of its projection (see `near`), for short numbers; None takes the
-        floats as they are, for a direction within rounding of the given one.
+        Bound of the denominators of its projection (see `near`), for short numbers; None takes the floats as
+        they are, for a direction within rounding of the given one.
     """
     values = [float(x) for x in vector]
     pole = max(range(len(values)), key=lambda i: abs(values[i]))  # projected from the far pole

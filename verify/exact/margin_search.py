@@ -14,6 +14,7 @@ from math import inf
 from typing import final
 
 from ..verdict import Quantity
+from .bisection import bisected
 from .rounding import rounded_down
 
 Holds = Callable[[Fraction], bool]
@@ -45,9 +46,14 @@ def greatest_certified(holds: Holds, first: Fraction, *, limit: Fraction, steps:
 
     Parameters
     ----------
-    first : value tried first; doubled while it holds
-    limit : nothing beyond it is tried
-    steps : bisections between the last value that held and the first that did not
+    holds : Holds
+        Whether something is certified at a value; may be false where it is true.
+    first : Fraction
+        Value tried first; doubled while it holds.
+    limit : Fraction
+        Nothing beyond it is tried.
+    steps : int
+        Bisections between the last value that held and the first that did not.
     """
     if not 0 < first <= limit:
         raise ValueError("expected 0 < first <= limit")
@@ -60,14 +66,8 @@ def greatest_certified(holds: Holds, first: Fraction, *, limit: Fraction, steps:
         if high == limit:
             return Margin(low, None, count)
         high = min(2 * high, limit)
-    for _ in range(steps):
-        middle = (low + high) / 2
-        count += 1
-        if holds(middle):
-            low = middle
-        else:
-            high = middle
-    return Margin(low, high, count)
+    low, high = bisected(holds, low, high, steps=steps)
+    return Margin(low, high, count + steps)
 
 
 def most_certified(holds: Callable[[int], bool], limit: int) -> Margin:

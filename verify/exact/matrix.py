@@ -54,6 +54,16 @@ def trace(M: Any) -> Fraction:
     return sum((fraction(M[i, i]) for i in range(M.nrows())), Fraction(0))
 
 
+def unit(axis: int) -> Matrix:
+    """Return e e' for the unit vector of an axis, (3, 3)."""
+    return tuple(tuple(Fraction(int(i == j == axis)) for j in range(3)) for i in range(3))
+
+
+def skew(a: Vector) -> Any:
+    """Return S(a) with S(a) b = a x b as a flint matrix, (3, 3)."""
+    return of([[0, -a[2], a[1]], [a[2], 0, -a[0]], [-a[1], a[0], 0]])
+
+
 def inverse(A: Rows) -> Matrix:
     """Return A^-1.
 

@@ -8,6 +8,7 @@ from typing import final
 
 from ...models.closed_loop import close_loop
 from ...models.laws import LAWS, Law
+from ...models.norms import MEASURED, Norm
 from ...models.schedule import Schedule
 from ..verdict import Claim
 from .certificate import floor_certificate
@@ -66,7 +67,7 @@ def answer(question: FloorQuestion) -> FloorAnswer:
     if q.search is not None and has_filter:
         worst = find_worst(
             q.law, q.body, q.schedule, q.initial,
-            horizon=_search_horizon(q.schedule), max_rate=q.max_rate, search=q.search,
+            horizon=_search_horizon(q.schedule), max_rate=q.max_rate, search=q.search, norms=_measured(q),
         )  # fmt: skip
     torque = found = None
     if floor is not None and floor.steps:
@@ -88,6 +89,12 @@ def answer(question: FloorQuestion) -> FloorAnswer:
     if q.torque_limit is not None:
         claims.append(torque_claim(facts, torque, q.torque_limit, q.torque_norm, q.run_peak))
     return FloorAnswer(tuple(claims), floor, converged, worst, torque, found)
+
+
+def _measured(q: FloorQuestion) -> tuple[Norm, ...]:
+    """Norms in which the runs over the set are measured: the limit's too, if it is one of the torque."""
+    own = (q.torque_norm,) if q.torque_norm.limits_torque else ()
+    return tuple(dict.fromkeys((*MEASURED, *own)))
 
 
 def _no_system(law: Law) -> str:

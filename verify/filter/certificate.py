@@ -36,8 +36,14 @@ def floor_certificate(
 
     Parameters
     ----------
-    convergence : its settling time for the question's tolerances is claimed too
-    torque : its bound of |g u| is claimed too
+    question : FloorQuestion
+        What was asked: law, body, schedule, set.
+    floor : FilterLowerBound
+        What was proved: its flowpipes are the witness.
+    convergence : Convergence, optional
+        Its settling time for the question's tolerances is claimed too.
+    torque : TorqueBound, optional
+        Its bound of |g u| is claimed too.
     """
     q, data = question, question_data(question)
     claim: dict[str, Any] = {"floor": Fraction(floor.value)}

@@ -146,9 +146,19 @@ def certify_floor(
 
     Parameters
     ----------
+    law : Law
+        The law; one without a comparison system gives None.
+    bounds : BodyBounds
+        Principal inertias of every body that the claim covers, kg m^2.
+    schedule : Schedule
+        Its windows; g must be continuous.
+    initial : InitialSet
+        Set of starts that the claim covers.
     horizon : Fraction or None
-        End of the time asked for, s; None asks for all time (periodic schedules only). A
-        periodic schedule is also certified for all time where a tail is found.
+        End of the time asked for, s; None asks for all time (periodic schedules only). A periodic schedule is
+        also certified for all time where a tail is found.
+    options : FloorOptions, optional
+        How hard to try; its defaults without one.
 
     Returns
     -------

@@ -7,11 +7,14 @@ converged (an upper bound of inf R of every run), along a run, worst found.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from decimal import Decimal
 from fractions import Fraction
 from math import degrees, isfinite
 from typing import Any, final
 
+from ...models.norms import Norm
 from ..certificates.format import Certificate
+from ..exact.rounding import digits_above, digits_below
 from ..schedule.zero_runs import longest_zero_run
 from ..verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict
 from .certify import FilterLowerBound
@@ -139,7 +142,7 @@ def torque_claim(
     facts: FloorFacts,
     bound: TorqueBound | None,
     limit: Fraction,
-    norm: str,
+    norm: Norm,
     seen: float | None = None,
 ) -> Claim:
     """Claim "torque.limit": the applied torque g u stays within the limit.
@@ -148,7 +151,7 @@ def torque_claim(
     """
     title = "applied torque within its limit"
     floor = facts.floor
-    statement = f"|g u| <= {float(limit):g} N m ({norm})"
+    statement = f"|g u| <= {float(limit):g} {norm.unit} ({norm.key})"
     if floor is None:
         return _undecided("torque.limit", title, statement, facts.no_system, facts.no_system_step)
     where = f"from every start with {floor.initial.description}"
@@ -160,6 +163,11 @@ def torque_claim(
     if not isfinite(bound.applied):
         reason = f"the certified floor of R, {_down(floor.value)} s, lets the gain grow beyond all numbers"
         return _undecided("torque.limit", title, statement, reason, _filter_step(floor), quantities)
+    if not norm.limits_torque:
+        reason = f"what is certified bounds the torque's length: what {norm.name} need for it is not bounded"
+        step = "give the limit as one of the torque's components or length, N m"
+        return _undecided("torque.limit", title, statement, reason, step, quantities)
+    # the torque's length, which is bounded, is never below its peak
     if Fraction(bound.applied) <= limit:
         margin = Quantity(
             "torque_reserve", float(limit) - bound.applied, float(limit) - bound.applied, "N m", "reserve"
@@ -186,12 +194,11 @@ def torque_claim(
     return _undecided("torque.limit", title, statement, reason, step, quantities)
 
 
-def _largest_found(facts: FloorFacts, norm: str, seen: float | None) -> tuple[float, str] | None:
+def _largest_found(facts: FloorFacts, norm: Norm, seen: float | None) -> tuple[float, str] | None:
     """Largest torque that this study saw, N m in that norm, and whose it is."""
     found = [] if seen is None else [(seen, "of the simulated run")]
-    if facts.worst is not None:
-        peaks = {"component": facts.worst.peak_component, "euclidean": facts.worst.peak_euclidean}
-        found.append((peaks[norm], f"of {facts.worst.runs} runs over the set"))
+    if facts.worst is not None and norm in facts.worst.peak:
+        found.append((facts.worst.peak[norm], f"of {facts.worst.runs} runs over the set"))
     return max(found, default=None)
 
 
@@ -356,18 +363,14 @@ def _seconds(value: Fraction) -> str:
 
 def _down(value: float) -> str:
     """Five digits, never above the value."""
-    return _shown(value, -1)
+    return _written(digits_below(value, 5))
 
 
 def _up(value: float) -> str:
     """Five digits, never below the value."""
-    return _shown(value, 1)
+    return _written(digits_above(value, 5))
 
 
-def _shown(value: float, direction: int) -> str:
-    from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
-
-    rounding = ROUND_CEILING if direction > 0 else ROUND_FLOOR
-    rounded = Context(prec=5, rounding=rounding).create_decimal(Decimal(value))
-    plain = rounded == 0 or -6 < rounded.adjusted() < 12
-    return f"{rounded:f}" if plain else f"{rounded:e}".replace("e+", "e")
+def _written(value: Decimal) -> str:
+    plain = value == 0 or -6 < value.adjusted() < 12
+    return f"{value:f}" if plain else f"{value:e}".replace("e+", "e")

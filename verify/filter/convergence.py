@@ -69,7 +69,10 @@ def analyse_convergence(floor: FilterLowerBound, *, attitude: float, rate: float
 
     Parameters
     ----------
-    attitude, rate : tolerances on |bv| and on |w|, rad/s
+    floor : FilterLowerBound
+        A certified floor with its flowpipes.
+    attitude, rate : float
+        Tolerances on |bv| and on |w|, rad/s.
     """
     reaches = [list(_reaches(floor, w)) for w in floor.flowpipes]
     gaps = max(b.cosine_gap for w in floor.flowpipes for b in (*w.boxes, *w.tail_boxes))

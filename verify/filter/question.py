@@ -7,6 +7,7 @@ from fractions import Fraction
 from typing import final
 
 from ...models.laws import Law
+from ...models.norms import LARGEST_COMPONENT, Norm
 from ...models.rigid_body import RigidBody
 from ...models.schedule import Schedule
 from .certify import FloorOptions
@@ -46,7 +47,7 @@ class FloorQuestion:
     attitude: Fraction = Fraction(1, 100)
     rate: Fraction = Fraction(1, 100)
     torque_limit: Fraction | None = None
-    torque_norm: str = "component"
+    torque_norm: Norm = LARGEST_COMPONENT
     run_floor: tuple[float, float] | None = None
     run_peak: float | None = None
     horizon: Fraction | None = None

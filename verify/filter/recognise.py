@@ -11,15 +11,15 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
 
-import casadi as ca
-
 from ...models.closed_loop import ClosedLoop, close_loop
 from ...models.laws import LAWS, Expression, Law
 from ...models.laws.scaled import filter_rate
 from .. import checker
 from ..certificates.format import as_text
-from ..certificates.program import NotAlgebraicError, write_lines
-from ..lyapunov.forms import law_form, symbol_names
+from ..certificates.program import NotAlgebraicError
+from ..exact.polynomial import NotPolynomialError
+from ..lyapunov.forms import law_form
+from ..lyapunov.normal_form import vanishes
 
 
 class NoComparisonError(ValueError):
@@ -74,7 +74,7 @@ def compared_law(law: Law) -> ComparedLaw:
     except checker.Invalid as error:
         raise NoComparisonError(f"no comparison theorem covers {law_words(law)}: {error}") from None
     kappa = loop.controller_states["k"] if adaptive else 1 / loop.controller_states["R"]
-    if loop.control.gain is None or not vanishes(loop, loop.control.gain - kappa):
+    if loop.control.gain is None or not _vanishes(loop, loop.control.gain - kappa):
         raise NoComparisonError(
             f"no comparison theorem covers {law_words(law)}: the gain it states (Control.gain) is not the "
             f"kappa = {'k' if adaptive else '1/R'} of its torque"
@@ -100,20 +100,15 @@ def follows_filter(loop: ClosedLoop) -> bool:
     if R is None or decay is None or has_resets(loop.law):
         return False
     expected = filter_rate(loop.plant, loop.time_symbols, R, decay)
-    return vanishes(loop, loop.control.state_rates["R"] - expected)
+    return _vanishes(loop, loop.control.state_rates["R"] - expected)
 
 
-def vanishes(loop: ClosedLoop, expression: Expression) -> bool:
-    """Whether an expression is the zero polynomial in the loop's symbols (R may be divided by)."""
-    symbols = symbol_names(loop)
+def _vanishes(loop: ClosedLoop, expression: Expression) -> bool:
+    """Whether an expression is seen to be the zero polynomial in the loop's symbols."""
     try:
-        lines = write_lines(symbols, [ca.SX(expression)])
-        ring = checker.Ring(list(symbols), [name for name in symbols if name == "R"])
-        program = checker.Node(list(lines.instructions), "expression")
-        values = checker.run(program, ring, {name: ring.symbol(name) for name in symbols})
-    except (NotAlgebraicError, checker.Invalid):
+        return vanishes(loop, expression)
+    except (NotAlgebraicError, NotPolynomialError):
         return False
-    return not values[lines.results[0][0]].terms
 
 
 def has_resets(law: Law) -> bool:

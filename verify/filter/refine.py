@@ -27,7 +27,12 @@ def tighten_settling_time(
 
     Parameters
     ----------
-    attitude, rate : tolerances on |bv| and on |w|, rad/s
+    floor : FilterLowerBound
+        What is refined.
+    attitude, rate : float
+        Tolerances on |bv| and on |w|, rad/s.
+    options : FloorOptions, optional
+        How hard to try; its defaults without one.
     """
     options, period = options or FloorOptions(), floor.schedule.period
     system = comparison_system(floor.law, floor.bounds)

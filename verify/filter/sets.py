@@ -55,11 +55,16 @@ class InitialSet:
 
         Parameters
         ----------
-        bounds : principal inertias
-        max_angle_deg : bound on 2 acos(b0), deg, in [0, 360]
-        max_rate : bound on |w(0)|, rad/s; then y <= sqrt(Jmax) (|w| + 2 g^2 kappa max |bv|)
-        max_weighted_rate : bound on |Omega(0)|_J, sqrt(kg m^2) rad/s
-        gain_term : g(0)^2 kappa(0), 1/s: zero where the schedule starts closed
+        bounds : BodyBounds
+            Principal inertias.
+        max_angle_deg : Fraction
+            Bound on 2 acos(b0), deg, in [0, 360].
+        max_rate : Fraction, optional
+            Bound on |w(0)|, rad/s; then y <= sqrt(Jmax) (|w| + 2 g^2 kappa max |bv|).
+        max_weighted_rate : Fraction, optional
+            Bound on |Omega(0)|_J, sqrt(kg m^2) rad/s.
+        gain_term : Fraction
+            g(0)^2 kappa(0), 1/s: zero where the schedule starts closed.
         """
         if not 0 <= max_angle_deg <= 360:
             raise ValueError(

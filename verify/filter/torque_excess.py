@@ -9,6 +9,7 @@ from fractions import Fraction
 from typing import Any
 
 from ...models.lowering import UnknownOperationError
+from ...models.norms import Norm
 from ..exact.ball import ball, float_above, float_below
 from ..exact.direction import rational_quaternion
 from ..flow.run_enclosure import EnclosedRun, ExactStart, NoEnclosureError
@@ -26,16 +27,22 @@ def refuted_limit(
 
     Parameters
     ----------
-    claim : "torque.limit", undecided
-    quaternion : (4,), scalar first; a rational one beside it is used, inside the set
-    rate : (3,), rad/s
-    at : time at which a simulation found the limit exceeded, s, > 0
+    claim : Claim
+        "torque.limit", undecided.
+    question : FloorQuestion
+        What was asked: law, body, schedule, set, limit.
+    quaternion : Sequence[float]
+        (4,), scalar first; a rational one beside it is used, inside the set.
+    rate : Sequence[Fraction]
+        (3,), rad/s.
+    at : float
+        Time at which a simulation found the limit exceeded, s, > 0.
 
     Returns
     -------
     Claim
-        As it came where the start is not certainly in the set, where the run could not be enclosed, or
-        where its enclosure does not exclude the limit.
+        As it came where it is not the torque itself that is limited, where the start is not certainly in
+        the set, where the run could not be enclosed, or where its enclosure does not exclude the limit.
     """
     q, limit = question, question.torque_limit
     start = start_inside(q, quaternion, rate)
@@ -46,7 +53,9 @@ def refuted_limit(
         torque = EnclosedRun(q.law, q.body, start).torque_at(q.schedule, instant)
     except (NoEnclosureError, UnknownOperationError):
         return claim
-    size = _size(torque, q.torque_norm)
+    if not q.torque_norm.limits_torque:
+        return claim
+    size = _size_below(torque, q.torque_norm)
     excess = size - ball(limit)
     if not excess > 0:
         return claim
@@ -62,7 +71,7 @@ def refuted_limit(
     how = "the run from this start, enclosed by interval Taylor steps in ball arithmetic"
     return replace(
         claim,
-        statement=f"|g u| <= {float(limit):g} N m ({q.torque_norm}) from every start "
+        statement=f"|g u| <= {float(limit):g} N m ({q.torque_norm.key}) from every start "
         f"with {q.initial.description}",
         verdict=Verdict.REFUTED,
         witness=Witness("from this start of the set, at this time", values, excess_found),
@@ -105,8 +114,12 @@ def _is_inside(question: FloorQuestion, start: ExactStart) -> bool:
     return weighted <= q.max_weighted_rate**2
 
 
-def _size(torque: Sequence[Any], norm: str) -> Any:
-    if norm == "euclidean":
-        return sum((x * x for x in torque), ball(0)).sqrt()
-    sizes = [abs(x) for x in torque]
+def _size_below(torque: Sequence[Any], norm: Norm) -> Any:
+    """Enclosure of a size that the torque's peak is not below: that of one block, or of one component."""
+    sizes: list[Any] = []
+    for block, at in norm.parts:
+        if block.is_round:
+            sizes.append(sum((x * x for x in torque[at]), ball(0)).sqrt())
+        else:
+            sizes += [abs(x) for x in torque[at]]
     return max(sizes, key=lambda x: float(x.lower()))

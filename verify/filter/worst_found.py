@@ -5,6 +5,7 @@ It proves nothing from below; beside a certified floor it tells how loose that f
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 from ...models.closed_loop import close_loop
 from ...models.ensemble import MetricOptions, Tolerances, simulate_ensemble
 from ...models.laws import Law
+from ...models.norms import MEASURED, Norm
 from ...models.rigid_body import RigidBody
 from ...models.schedule import Schedule
 from ...models.types import Array
@@ -58,7 +60,7 @@ class WorstFound:
     value : s
     quaternion, rate : the initial state, (4,) and (3,) rad/s
     instant : when R was least, s
-    peak_component, peak_euclidean : largest applied torque of any of the runs, N m
+    peak : largest applied torque of any of the runs by norm, in the norm's unit
     runs, horizon : number of runs from starts in the set that got to the horizon, and that, s
     """
 
@@ -66,8 +68,7 @@ class WorstFound:
     quaternion: tuple[float, ...]
     rate: tuple[float, ...]
     instant: float
-    peak_component: float
-    peak_euclidean: float
+    peak: Mapping[Norm, float]
     runs: int
     horizon: float
 
@@ -81,6 +82,7 @@ def find_worst(
     horizon: Fraction,
     max_rate: Fraction | None = None,
     search: Search | None = None,
+    norms: Sequence[Norm] = MEASURED,
 ) -> WorstFound | None:
     """Search an initial set for the start with the least R over [0, horizon].
 
@@ -89,10 +91,11 @@ def find_worst(
     Parameters
     ----------
     max_rate : further bound on |w(0)| of the set, rad/s, if it has one
+    norms : in which the runs' torques are measured
     """
     options = search or Search()
     rng = np.random.default_rng(options.seed)
-    shape = _Shape(law, body, schedule, initial, max_rate)
+    shape = _Shape(law, body, schedule, initial, max_rate, tuple(norms))
     points = shape.draw(rng, options.samples)
     values, times, peaks = shape.run(points, horizon)
     radius = 0.3
@@ -111,7 +114,7 @@ def find_worst(
     state = shape.states(points[worst : worst + 1])[0]
     return WorstFound(
         float(values[worst]), tuple(state[:4].tolist()), tuple(state[4:].tolist()), float(times[worst]),
-        float(peaks[0]), float(peaks[1]), int(np.isfinite(values).sum()), float(horizon),
+        dict(zip(norms, peaks.tolist(), strict=True)), int(np.isfinite(values).sum()), float(horizon),
     )  # fmt: skip
 
 
@@ -125,6 +128,7 @@ class _Shape:
     schedule: Schedule
     initial: InitialSet
     max_rate: Fraction | None
+    norms: tuple[Norm, ...]
 
     def draw(self, rng: np.random.Generator, count: int) -> Array:
         i = self.initial
@@ -182,7 +186,7 @@ class _Shape:
         return float(self.schedule.gain(0.0)) ** 2 * kappa
 
     def run(self, points: Array, horizon: Fraction) -> tuple[Array, Array, Array]:
-        """Least R of each point (inf outside the set) and when; the largest torques, component and norm."""
+        """Least R of each point (inf outside the set) and when; the largest torque in each norm."""
         states = self.states(points)
         result = simulate_ensemble(
             self.law,
@@ -190,12 +194,12 @@ class _Shape:
             self.schedule,
             states,
             horizon=horizon,
-            metrics=MetricOptions(),
+            metrics=MetricOptions(norms=self.norms),
             tolerances=SEARCHING,
         )
         assert result.metrics is not None
         values = result.metrics.filter_minimum
         bad = np.isnan(values) | ~self.inside(states)
-        torques = np.vstack([result.metrics.peak_component, result.metrics.peak_euclidean])
+        torques = np.vstack([result.metrics.peak[norm] for norm in self.norms])
         peaks = np.max(torques, axis=1, where=~bad & np.isfinite(torques).all(axis=0), initial=0.0)
         return np.where(bad, np.inf, values), result.metrics.filter_minimum_time, peaks

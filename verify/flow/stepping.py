@@ -161,7 +161,6 @@ class Stepper:
     slack: float = 2e-4
     finest: int = 4096
     proved: int = 0
-    attempts: int = 0
     _levels: dict[tuple[Coefficients, Fraction], int] = field(default_factory=dict)
 
     def remember(self, other: Stepper) -> None:
@@ -217,7 +216,6 @@ class Stepper:
         stop = piece.start + piece.length * Fraction(j + 1, n)
         peak = _peak(piece.shape)
         for modes in self.system.choices(state, peak):
-            self.attempts += 1
             first = self.system.loosened(state, modes)
             proposal = self._propose(piece.shape, part, float(stop - start), first, modes)
             if proposal is None:

@@ -17,10 +17,11 @@ from typing import Any
 import numpy as np
 
 from ...models.linear import LinearPlant
-from ...models.types import ExactMatrix
 from .. import checker
 from ..certificates.format import Certificate, certificate_text
 from ..certificates.schedule import schedule_data
+from ..exact.matrix import echelon, identity, of, rows, trace, zeros
+from ..exact.rational import rational
 
 
 def plant_data(plant: LinearPlant) -> dict[str, Any]:
@@ -50,14 +51,14 @@ def growing_part(plant: LinearPlant) -> Certificate | None:
     """Certificate that a carried part does not shrink, so that some multiplier has modulus >= 1; or None."""
     period, total = plant.schedule.period, mean_gain(plant)
     assert period is not None
-    A, F = _matrix(plant.exact["A"]), _matrix(plant.exact["B"]) * _matrix(plant.exact["K"])
+    A, F = of(plant.exact["A"]), of(plant.exact["B"]) * of(plant.exact["K"])
     for side, (first, second) in {"left": (A, F), "right": (A.transpose(), F.transpose())}.items():
         for W in _parts(first, second):
             S, R = _carried(W, first), _carried(W, second)
-            growth = period * _trace(S) - total * _trace(R)
+            growth = period * trace(S) - total * trace(R)
             if growth < 0:
                 continue
-            witness = {"side": side, "W": _rows(W), "S": _rows(S), "R": _rows(R)}
+            witness = {"side": side, "W": rows(W), "S": rows(S), "R": rows(R)}
             found = Certificate("floquet-liouville", data_of(plant), {"growth": growth}, witness)
             if _accepted(found):
                 return found
@@ -68,12 +69,12 @@ def falling_function(plant: LinearPlant) -> Certificate | None:
     """Certificate that x'Px falls at every gain, or over a period of commuting motions; or None."""
     period, total = plant.schedule.period, mean_gain(plant)
     assert period is not None
-    A, F = _matrix(plant.exact["A"]), _matrix(plant.exact["B"]) * _matrix(plant.exact["K"])
+    A, F = of(plant.exact["A"]), of(plant.exact["B"]) * of(plant.exact["K"])
     tries: list[tuple[dict[str, Any], Any]] = []
     if A * F == F * A:
-        tries.append(({"form": "commuting"}, _scaled(A, period) - _scaled(F, total)))
+        tries.append(({"form": "commuting"}, A * rational(period) - F * rational(total)))
     least, greatest = _gain_range(plant)
-    tries.append(({"form": "gains", "least": least, "greatest": greatest}, A - _scaled(F, total / period)))
+    tries.append(({"form": "gains", "least": least, "greatest": greatest}, A - F * rational(total / period)))
     for form, field in tries:
         P = _lyapunov(field)
         if P is None:
@@ -107,7 +108,7 @@ def _parts(A: Any, F: Any) -> Iterator[Any]:
     that one growing mode is not hidden by others that shrink.
     """
     n = A.nrows()
-    yield _identity(n)
+    yield identity(n)
     power, columns = F, []
     for _ in range(n):
         columns.append(power)
@@ -125,9 +126,10 @@ def _parts(A: Any, F: Any) -> Iterator[Any]:
 
 
 def _polynomial_at(p: Any, S: Any) -> Any:
-    total = _scaled(S, Fraction(0))
+    n = S.nrows()
+    total = zeros(n, n)
     for c in reversed(p.coeffs()):
-        total = total * S + _scaled(_identity(S.nrows()), Fraction(int(c.p), int(c.q)))
+        total = total * S + identity(n) * c
     return total
 
 
@@ -138,35 +140,33 @@ def _carried(W: Any, A: Any) -> Any:
 
 def _left_kernel(M: Any) -> Any:
     """Rows v with v M = 0, or None if there is only v = 0."""
-    reduced, rank = M.transpose().rref()
-    n = M.nrows()
-    if rank == n:
+    reduced, pivots = echelon(M.transpose())
+    free = [j for j in range(M.nrows()) if j not in pivots]
+    if not free:
         return None
-    pivots = [next(j for j in range(n) if reduced[i, j] != 0) for i in range(rank)]
-    rows = []
-    for free in (j for j in range(n) if j not in pivots):
-        row = [0] * n
-        row[free] = 1
+    kernel = zeros(len(free), M.nrows())
+    for place, column in enumerate(free):
+        kernel[place, column] = 1
         for i, j in enumerate(pivots):
-            row[j] = -reduced[i, free]
-        rows.append(row)
-    return _flint(rows)
+            kernel[place, j] = -reduced[i, column]
+    return kernel
 
 
 def _beside(parts: list[Any]) -> Any:
-    return _flint([[x for part in parts for x in part.tolist()[i]] for i in range(parts[0].nrows())])
-
-
-def _trace(M: Any) -> Fraction:
-    total = sum((M[i, i] for i in range(M.nrows())), M[0, 0] * 0)
-    return Fraction(int(total.p), int(total.q))
+    n, width = parts[0].nrows(), parts[0].ncols()
+    whole = zeros(n, width * len(parts))
+    for place, part in enumerate(parts):
+        for i in range(n):
+            for j in range(width):
+                whole[i, place * width + j] = part[i, j]
+    return whole
 
 
 def _lyapunov(field: Any) -> list[list[Fraction]] | None:
     """A rational P, near the solution of N'P + P N = -I in balanced coordinates; None if N is not stable."""
     from scipy.linalg import LinAlgError, matrix_balance, solve_continuous_lyapunov
 
-    N = np.array([[float(x) for x in row] for row in _rows(field)])
+    N = np.array([[float(x) for x in row] for row in rows(field)])
     try:
         balanced, T = matrix_balance(N, permute=False)
         if not np.linalg.eigvals(balanced).real.max() < 0:
@@ -182,29 +182,3 @@ def _lyapunov(field: Any) -> list[list[Fraction]] | None:
         return None
     P = P / np.abs(P).max()
     return [[Fraction(x) for x in row] for row in ((P + P.T) / 2).tolist()]
-
-
-def _flint(rows: list[list[Any]]) -> Any:
-    import flint
-
-    return flint.fmpq_mat([[flint.fmpq(x) for x in row] for row in rows])
-
-
-def _matrix(rows: ExactMatrix) -> Any:
-    import flint
-
-    return flint.fmpq_mat([[flint.fmpq(x.numerator, x.denominator) for x in row] for row in rows])
-
-
-def _identity(n: int) -> Any:
-    return _flint([[int(i == j) for j in range(n)] for i in range(n)])
-
-
-def _scaled(M: Any, factor: Fraction) -> Any:
-    import flint
-
-    return M * flint.fmpq(factor.numerator, factor.denominator)
-
-
-def _rows(M: Any) -> list[list[Fraction]]:
-    return [[Fraction(int(x.p), int(x.q)) for x in row] for row in M.tolist()]

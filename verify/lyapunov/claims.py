@@ -29,12 +29,13 @@ def lyapunov_claims(
 
     Parameters
     ----------
-    law, body : the closed loop
+    law, body : Law, RigidBody
+        The closed loop.
     tolerance : (3, 3) exact or None
         Largest deviation of each entry of the inertia, kg m^2; claims then hold for the whole box.
     schedule : Schedule or None
-        Where V' <= 0 cannot be certified for every g, certify it for 0 <= g <= the schedule's largest;
-        and the phases searched for a violation.
+        Where V' <= 0 cannot be certified for every g, certify it for 0 <= g <= the schedule's largest; and
+        the phases searched for a violation.
 
     Notes
     -----

@@ -16,6 +16,7 @@ from itertools import product
 
 from ...models.rigid_body import RigidBody
 from ..certificates.format import Certificate
+from ..exact.bisection import bisected
 from ..exact.matrix import (
     Matrix,
     Rows,
@@ -121,10 +122,7 @@ def sharp_threshold(
     high = Fraction(1)
     while not holds(high):
         high *= 2
-    low = Fraction(0)
-    while high - low > high / 2**50:
-        middle = (low + high) / 2
-        low, high = (low, middle) if holds(middle) else (middle, high)
+    low, high = bisected(lambda lam: not holds(lam), Fraction(0), high, relative=Fraction(1, 2**50))
     return rational_quantity("sharp_threshold", low, high, "1/s", "least lambda with V' <= 0 everywhere")
 
 

@@ -13,9 +13,7 @@ from typing import final
 import numpy as np
 
 from ...models.types import Array
-
-USABLE = frozenset({"Solved", "AlmostSolved"})
-"""Clarabel's words after which its numbers are worth rounding (they prove nothing by themselves)."""
+from ..solver_status import clarabel_status
 
 
 @final
@@ -42,11 +40,18 @@ def maximise_level(
 
     Parameters
     ----------
-    sizes : orders of the matrices G_i
-    equations : rows of A: column number -> coefficient
-    columns : (matrix, p, q) with p <= q of each entry h: G[p, q] = G[q, p] = h
-    right, level_column : (m,)
-    shift : 1 to push the least eigenvalue up, 0 if t enters the equations alone
+    sizes : Sequence[int]
+        Orders of the matrices G_i.
+    equations : Sequence[dict[int, float]]
+        Rows of A: column number -> coefficient.
+    columns : Sequence[tuple[int, int, int]]
+        (matrix, p, q) with p <= q of each entry h: G[p, q] = G[q, p] = h.
+    right, level_column : Array
+        Right side and the column of t, (m,).
+    shift : float
+        1 to push the least eigenvalue up, 0 if t enters the equations alone.
+    cap : float
+        Largest t that is of use.
 
     Returns
     -------
@@ -90,7 +95,7 @@ def maximise_level(
     objective[0] = -1.0
     solver = clarabel.DefaultSolver(sp.csc_matrix((count, count)), objective, A, b, cones, settings)
     found = solver.solve()
-    if str(found.status) not in USABLE:
+    if not clarabel_status(found).is_usable:
         return None
     x = np.asarray(found.x)
     matrices = [np.zeros((n, n)) for n in sizes]

@@ -8,18 +8,21 @@ Only what the checker accepts counts.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, final
 
 from .. import checker
-from ..certificates.format import Certificate, as_text, certificate_text
+from ..certificates.format import Certificate, certificate_text
 from ..certificates.program import NotAlgebraicError
-from ..exact.matrix import Matrix
+from ..exact.matrix import Matrix, Rows
+from ..exact.polynomial import NotPolynomialError, Ring
 from .candidates import Candidate
+from .conditions import vertices
 from .forms import inertia_data, law_form, parameter_data, storage_form
 from .gram_search import Face, Gram, find_gram, largest_rate
+from .normal_form import ABOVE_FLOOR, FLOOR, decay_polynomials
 from .sums_of_squares import Target, split
 
 BACKING_OFF = (Fraction(1, 10**7), Fraction(1, 10**6), Fraction(1, 10**5), Fraction(1, 1000), Fraction(1, 20))
@@ -36,13 +39,11 @@ class DecayCertificate:
     Attributes
     ----------
     rate : Fraction, 1/s
-    attempted : float, the rate at which the solver's search ended, not proved
     statement : the claim as the checker words it
     """
 
     certificate: Certificate
     rate: Fraction
-    attempted: float
     statement: tuple[str, ...]
 
 
@@ -88,37 +89,39 @@ def certify_decay(
     claim["domain"] = "above floor" if candidate.floor is not None else "everywhere"
     if gain_bound is not None:
         claim["gain_bound"] = gain_bound
-    vertices = list(_targets(data, claim, gain_bound))
-    if candidate.right_side is None and rate is None and not _is_nonnegative_reference(vertices):
+    try:
+        problems = list(_targets(candidate, vertices(inertia, tolerance), weight, gain_bound))
+    except NotPolynomialError as error:
+        raise NoCertificateError(str(error)) from None
+    if candidate.right_side is None and rate is None and not _is_nonnegative_reference(problems):
         rate = Fraction(0)  # beside a W that may be negative a rate would say nothing
-    best = _best_rate(vertices) if rate is None else float(rate)
+    best = _best_rate(problems) if rate is None else float(rate)
     if best is None:
         raise NoCertificateError("-V' was not found to be a sum of squares of its own degree on the sphere")
     for tried in _rates(best) if rate is None else iter([rate]):
-        grams = _all_grams(vertices, tried)
+        grams = _all_grams(problems, tried)
         if grams is not None:
-            return _accepted(data, claim, tried, grams, best, vertices[0][0].names)
+            return _accepted(data, claim, tried, grams, problems[0][0].names)
     raise NoCertificateError(
         f"no Gram matrix could be rounded at or below {best:.6g} 1/s, where the solver's search ended"
     )
 
 
-Problem = tuple[checker.Ring, list[Target]]
+Problem = tuple[Ring, list[Target]]
 Term = tuple[Mapping[str, int], Gram]
 
 
-def _targets(data: dict[str, Any], claim: dict[str, Any], gain_bound: Fraction | None) -> Iterator[Problem]:
-    """Polynomial problems, one for each vertex of the box of inertias, as the checker derives them."""
-    nodes = checker.Node(as_text(data), "data"), checker.Node(as_text(claim), "claim")
-    signed = ["k_target", "s"] if claim["domain"] == "above floor" else ["k_target", "R"]
+def _targets(
+    candidate: Candidate, inertias: Iterable[Rows], weight: Fraction | None, gain_bound: Fraction | None
+) -> Iterator[Problem]:
+    """Polynomial problems, one for each inertia."""
+    signed = [FLOOR, ABOVE_FLOOR if candidate.floor is not None else "R"]
     known: list[Target] = []
-    try:
-        for gap, reference in checker.gaps(*nodes):
-            targets = split(gap, reference, signed, gain_bound, known)
-            known = known or targets
-            yield gap.ring, targets
-    except checker.Invalid as error:
-        raise NoCertificateError(str(error)) from None
+    for J in inertias:
+        gap, reference = decay_polynomials(candidate, J, weight=weight)
+        targets = split(gap, reference, signed, gain_bound, known)
+        known = known or targets
+        yield gap.ring, targets
 
 
 def _best_rate(problems: list[Problem]) -> float | None:
@@ -178,7 +181,6 @@ def _accepted(
     claim: dict[str, Any],
     rate: Fraction,
     grams: list[list[Term]],
-    best: float,
     names: tuple[str, ...],
 ) -> DecayCertificate:
     """Write the certificate and ask the checker."""
@@ -187,7 +189,7 @@ def _accepted(
     (finding,) = checker.check_text(certificate_text([certificate]))
     if not finding.valid:
         raise NoCertificateError(f"the checker refused the certificate: {finding.reason}")
-    return DecayCertificate(certificate, rate, best, finding.claim)
+    return DecayCertificate(certificate, rate, finding.claim)
 
 
 def _term(common: Mapping[str, int], gram: Gram, names: tuple[str, ...]) -> dict[str, Any]:

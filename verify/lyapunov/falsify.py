@@ -106,10 +106,16 @@ def falsify(
 
     Parameters
     ----------
+    candidate : Candidate
+        The storage function, its law and what is claimed of V'.
+    body : RigidBody
+        The body.
     schedule : Schedule or None
         Phases to search, one piece after another; without it a smooth unit pulse of one second.
     weight : Fraction
         The weight a where the storage function leaves it free.
+    options : Falsifier, optional
+        How hard to search; its defaults without one.
     """
     options = options or Falsifier()
     search = _Search(candidate, body, weight, options)

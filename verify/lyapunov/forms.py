@@ -60,6 +60,8 @@ def storage_form(
 
     Parameters
     ----------
+    candidate : Candidate
+        The storage function and its law.
     weight : Fraction or None
         Settles a free weight a.
     identity : bool

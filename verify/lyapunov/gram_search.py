@@ -13,9 +13,9 @@ from typing import final
 import numpy as np
 
 from ...models.types import Array
-from ..checker import Exponents, Ring
 from ..exact import matrix
 from ..exact.matrix import Matrix
+from ..exact.polynomial import Exponents, Ring
 from .cone_program import maximise_level
 from .rounding import fit_exactly, rational_null_space
 from .sums_of_squares import Square, Target, Terms, square_terms

@@ -25,6 +25,10 @@ def fit_exactly(
     ----------
     rows : list of dict
         Each equation as {unknown: coefficient}.
+    right : list[Fraction]
+        Right sides, one an equation.
+    guess : list[float]
+        Floating-point solution, one number an unknown.
     level : float
         Least eigenvalue that the guess has to spare; the guess is rounded far more finely.
     """

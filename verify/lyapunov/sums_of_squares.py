@@ -13,7 +13,7 @@ from fractions import Fraction
 from itertools import combinations_with_replacement, product
 from typing import final
 
-from ..checker import Exponents, Poly, Ring
+from ..exact.polynomial import Exponents, Polynomial, Ring
 
 Terms = dict[Exponents, Fraction]
 BLOCKS = (("c", "b1", "b2", "b3"), ("y1", "y2", "y3"))
@@ -26,7 +26,7 @@ class Square:
     """One term of the sum: factors (name -> power) times z'Gz with z the monomials of `basis`."""
 
     factors: tuple[tuple[str, int], ...]
-    factor: Poly
+    factor: Polynomial
     basis: tuple[Exponents, ...]
 
 
@@ -42,7 +42,11 @@ class Target:
 
 
 def split(
-    gap: Poly, reference: Poly, signed: Sequence[str], gain_bound: Fraction | None, known: list[Target]
+    gap: Polynomial,
+    reference: Polynomial,
+    signed: Sequence[str],
+    gain_bound: Fraction | None,
+    known: list[Target],
 ) -> list[Target]:
     """Split gap - rate * reference by powers of the symbols known to be positive.
 
@@ -57,7 +61,7 @@ def split(
             rest = tuple(0 if i in places else e for i, e in enumerate(key))
             groups.setdefault(tuple(key[i] for i in places), ({}, {}))[which][rest] = value
     targets: list[Target] = []
-    for powers, (fixed, ref) in groups.items():
+    for powers, (fixed, ref) in sorted(groups.items()):
         common = {ring.names[i]: e for i, e in zip(places, powers, strict=True) if e}
         support = fixed.keys() | ref.keys()
         old = (t.squares for t in (*known, *targets) if t.fixed.keys() | t.reference.keys() == support)
@@ -81,7 +85,7 @@ def _squares(
     return tuple(Square(choice, p, tuple(basis)) for choice, p, basis in triples if basis)
 
 
-def _factor(ring: Ring, powers: Sequence[tuple[str, int]], gain_bound: Fraction | None) -> Poly:
+def _factor(ring: Ring, powers: Sequence[tuple[str, int]], gain_bound: Fraction | None) -> Polynomial:
     result = ring.constant(1)
     for name, power in powers:
         if name == "gmax-g":
@@ -89,7 +93,7 @@ def _factor(ring: Ring, powers: Sequence[tuple[str, int]], gain_bound: Fraction 
             base = ring.constant(gain_bound) - ring.symbol("g")
         else:
             base = ring.symbol(name)
-        result = result * base.power(power)
+        result = result * base**power
     return result
 
 
@@ -121,7 +125,7 @@ def _block_monomials(ring: Ring, block: Sequence[int], degree: int) -> list[Expo
     return result
 
 
-def square_terms(ring: Ring, factor: Poly, left: Exponents, right: Exponents) -> Terms:
+def square_terms(ring: Ring, factor: Polynomial, left: Exponents, right: Exponents) -> Terms:
     """Return factor * left * right in normal form, for a factor without c."""
     key = tuple(map(int.__add__, left, right))
     c = ring.index["c"]
@@ -140,7 +144,7 @@ def square_terms(ring: Ring, factor: Poly, left: Exponents, right: Exponents) ->
 
 
 def _prune(
-    ring: Ring, pairs: list[tuple[Poly, list[Exponents]]], support: Set[Exponents]
+    ring: Ring, pairs: list[tuple[Polynomial, list[Exponents]]], support: Set[Exponents]
 ) -> list[list[Exponents]]:
     """Drop monomials whose own square nothing could cancel: their row of G is zero."""
     table = [

@@ -96,9 +96,19 @@ def sample_derivative(
     Parameters
     ----------
     check : DerivativeFunction
-    weight : a, kg m^2/s^2
-    gain_target : k* = 1/R_min, 1/s (laws with a gain state)
-    progress : called with the fraction done
+        V' and what it is held against.
+    body : RigidBody
+        The body.
+    domain : SampledDomain
+        Box of states that is sampled.
+    weight : Fraction
+        a, kg m^2/s^2.
+    gain_target : Fraction
+        k* = 1/R_min, 1/s (laws with a gain state).
+    sampling : Sampling, optional
+        Number of samples, seed and search; its defaults without one.
+    progress : Progress, optional
+        Called with the fraction done.
     """
     sampling = sampling if sampling is not None else Sampling()
     uniform = _uniform(check, body, weight, gain_target)

@@ -42,8 +42,16 @@ def refine(
 
     Parameters
     ----------
-    uniform : parameters, body and extra arguments of `check.function`
-    starts : (m, n) coordinates; they must lie in the domain
+    check : DerivativeFunction
+        V' and what it is held against.
+    domain : SampledDomain
+        Box of states the search stays in.
+    uniform : tuple[Array, Array, Array]
+        Parameters, body and extra arguments of `check.function`.
+    starts : Array
+        (m, n) coordinates; they must lie in the domain.
+    margin : Margin
+        Which of the two is minimised.
     """
     from scipy.optimize import minimize
 

@@ -15,7 +15,7 @@ from typing import final
 from ...models.schedule import Schedule, Window
 from ...models.schedule import polynomial as poly
 from ...models.schedule.polynomial import Coefficients
-from ..exact.polynomial_range import least_value
+from ..exact.bernstein import least_value
 from ..exact.rational_quantity import rational_quantity, seconds
 from ..verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict, Witness
 from .excitation_screen import MAX_EXACT, screen
@@ -73,6 +73,7 @@ def excitation(schedule: Schedule, length: Fraction) -> Excitation:
     Parameters
     ----------
     schedule : Schedule
+        The schedule whose g it is about.
     length : Fraction
         T > 0, s. For a finite table only intervals within it count.
 
@@ -131,6 +132,7 @@ def excitation_claim(schedule: Schedule, length: Fraction | None = None) -> Clai
     Parameters
     ----------
     schedule : Schedule
+        The schedule whose g it is about.
     length : Fraction or None
         T, s; by default `default_length`.
 

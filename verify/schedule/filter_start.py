@@ -6,7 +6,7 @@ from fractions import Fraction
 
 from ...models.schedule import Schedule
 from ...models.schedule import polynomial as poly
-from ..exact.polynomial_range import least_value
+from ..exact.bernstein import least_value
 from ..exact.rational_quantity import rational_quantity
 from ..verdict import Claim, Evidence, EvidenceKind, Verdict, Witness
 
@@ -21,8 +21,12 @@ def filter_start_claim(schedule: Schedule, *, decay: Fraction, initial: Fraction
 
     Parameters
     ----------
-    decay : lambda, 1/s, > 0
-    initial : R(0), s
+    schedule : Schedule
+        The schedule whose g drives the filter.
+    decay : Fraction
+        lambda, 1/s, > 0.
+    initial : Fraction
+        R(0), s.
 
     Returns
     -------

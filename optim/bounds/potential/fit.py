@@ -175,7 +175,7 @@ def edge_points(chart: Chart, count: int) -> Array:
 def in_region(chart: Chart, x: Array) -> NDArray[np.bool_]:
     """Whether scaled points are in the region (floats)."""
     value = np.zeros(len(x))
-    for e, c in chart.region.items():
+    for e, c in chart.region.terms.items():
         value += float(c) * x[:, 0] ** e[0] * x[:, 1] ** e[1] * x[:, 2] ** e[2]
     return np.asarray((value >= 0) & ((x * x).sum(axis=1) <= 1))
 

@@ -25,8 +25,9 @@ from typing import final
 import numpy as np
 
 from ....models.types import Array
+from ....verify.exact.polynomial import Polynomial
 from ..sets.momentum_sets import EVALUATION_SLACK, MomentumSet, TaylorBoxes
-from ..sets.polynomials import Polynomial, as_table, halving_matrices
+from ..sets.polynomials import as_table, halving_matrices
 
 _CORNERS = np.array([[i, j, k] for i in (-1.0, 1.0) for j in (-1.0, 1.0) for k in (-1.0, 1.0)])
 _BATCH = 2048

@@ -22,11 +22,13 @@ import numpy as np
 
 from ....models.rigid_body import RigidBody
 from ....models.types import Array
-from ..sets import polynomials as poly
-from ..sets.chart import Chart, Quaternion, Vector, arctangent_below, chart_between, square_root
-from ..sets.momentum_sets import MomentumSet, length_above
-from ..sets.polynomials import Polynomial, exponents
-from ..sets.rate import exact_inverse, momentum_rate_polynomials
+from ....verify.exact.ball import arc_below, length, square_root
+from ....verify.exact.polynomial import Polynomial
+from ....verify.exact.rounding import grid_above, grid_below
+from ..sets.chart import Chart, Quaternion, Vector, chart_between
+from ..sets.momentum_sets import MomentumSet
+from ..sets.polynomials import AXES, RING, exponents
+from ..sets.rate import momentum_rate_polynomials
 from .fit import Fit, PotentialProgram
 from .prove import BranchAndBound, Supremum
 
@@ -118,15 +120,14 @@ def separation(
 
 def _exact(coefficients: Array, degree: int) -> Polynomial:
     pairs = zip(exponents(degree)[1:], coefficients, strict=True)
-    return {e: Fraction(float(c)) for e, c in pairs if c != 0.0}
+    return RING.polynomial({e: Fraction(float(c)) for e, c in pairs if c != 0.0})
 
 
 def _largest_rate(
     body: RigidBody, chart: Chart, potential: Polynomial, momenta: MomentumSet, prover: BranchAndBound
 ) -> Supremum:
-    degree = max((sum(e) for e in potential), default=1)
-    rate = momentum_rate_polynomials(potential, exact_inverse(body.exact_inertia), chart.outer)
-    return prover.supremum(rate, chart.region, momenta, degree=max(degree + 1, 4))
+    rate = momentum_rate_polynomials(potential, body.exact_inverse, chart.outer)
+    return prover.supremum(rate, chart.region, momenta, degree=max(potential.degree + 1, 4))
 
 
 def potential_program(
@@ -163,8 +164,7 @@ def difference_below(chart: Chart, potential: Polynomial, start: Quaternion, tar
     """Lower bound of phi(start) - max phi over the targets, in exact arithmetic."""
     x, error = chart.coordinates(start)
     high = _largest_near(chart, potential, target_coordinates(chart), _target_radius(chart, target))
-    negative = poly.scaled(potential, -1)
-    return -_largest_near(chart, negative, x, error * 2) - high
+    return -_largest_near(chart, -potential, x, error * 2) - high
 
 
 def reach_below(chart: Chart, start: Quaternion, target: Target, speed: Fraction) -> Fraction:
@@ -176,40 +176,8 @@ def reach_below(chart: Chart, start: Quaternion, target: Target, speed: Fraction
 
 def quick_separation(start: Quaternion, target: Target, speed: Fraction) -> Fraction:
     """Travel from the rotation angle alone: twice the quaternion arc over the fastest rate, rounded down."""
-    high = square_root(sum((c * c for c in start), Fraction(0)))[1]
-    low = square_root(sum((c * c for c in start), Fraction(0)))[0]
-    vector = square_root(sum((c * c for c in start[1:]), Fraction(0)))[0]
-    # tan(arc/2) = |qv| / (|q| + q0); beyond a quarter turn through the complement.
-    near, far = high + start[0], low - start[0]
-    if start[0] >= 0:
-        arc = 2 * _arctangent_of(vector / near) if near > 0 else Fraction(0)
-    else:
-        above = square_root(sum((c * c for c in start[1:]), Fraction(0)))[1] / far
-        arc = PI_BELOW - 2 * _arctangent_above(above)
+    arc = grid_below(arc_below(start[1:], start[0]), 80)
     return max(2 * (arc - target.arc_above()) / speed, Fraction(0))
-
-
-PI_BELOW = Fraction(3141592653589793238, 10**18)
-
-
-def _arctangent_of(t: Fraction) -> Fraction:
-    if t < Fraction(7, 10):
-        return arctangent_below(_rounded_down(t))
-    return PI_BELOW / 4 - _arctangent_above(max((1 - t) / (1 + t), Fraction(0)))
-
-
-def _arctangent_above(t: Fraction) -> Fraction:
-    """Upper bound of atan(t), 0 <= t <= 1.01, through atan(t) = pi/4 - atan((1-t)/(1+t))."""
-    pi_above = PI_BELOW + Fraction(1, 10**18)
-    if t >= 1:
-        return pi_above / 4 + (t - 1)
-    if t <= Fraction(1, 100):
-        return t - t**3 / 3 + t**5 / 5
-    return pi_above / 4 - arctangent_below(_rounded_down((1 - t) / (1 + t)))
-
-
-def _rounded_down(t: Fraction) -> Fraction:
-    return Fraction((t * 2**48).__floor__(), 2**48)
 
 
 def target_coordinates(chart: Chart) -> Vector:
@@ -222,28 +190,28 @@ def _target_radius(chart: Chart, target: Target) -> Fraction:
     chord = target.chord_above()
     if not chord:
         return chord
-    length = length_above(target_coordinates(chart))
-    if length + chord > 1:
+    size = length(target_coordinates(chart))[1]
+    if size + chord > 1:
         raise ValueError("the terminal tolerance is too large for this chart")
     radius = chord
     for _ in range(3):
-        product = (1 + length**2) * (1 + (length + radius) ** 2)
+        product = (1 + size**2) * (1 + (size + radius) ** 2)
         radius = min(radius, chord * square_root(product)[1] / 2)
-    return Fraction((radius * 2**60).__ceil__(), 2**60)
+    return grid_above(radius, 60)
 
 
 def _largest_near(chart: Chart, p: Polynomial, x: Sequence[Fraction], radius: Fraction) -> Fraction:
     """Upper bound of a polynomial of the scaled coordinates within a distance of x (unscaled)."""
-    local = poly.shifted(p, [c / chart.outer for c in x])
+    local = p.moved([c / chart.outer for c in x])
     size = radius / chart.outer
-    value = local.get(poly.CONSTANT, Fraction(0))
+    value = local.coefficient(RING.one)
     if not size:
         return value
-    value += length_above(tuple(local.get(e, Fraction(0)) for e in poly.AXES)) * size
-    return value + sum((abs(c) * size ** sum(e) for e, c in local.items() if sum(e) > 1), Fraction(0))
+    value += length(local.coefficient(e) for e in AXES)[1] * size
+    return value + sum((abs(c) * size ** sum(e) for e, c in local.terms.items() if sum(e) > 1), Fraction(0))
 
 
 def _arc_between(x: Vector, chart: Chart, side: int) -> Fraction:
     """Upper bound of the quaternion arc between x and a model end point: twice the distance."""
     gap = tuple(c - side * chart.inner * n for c, n in zip(x, chart.direction, strict=True))
-    return 2 * length_above(gap)
+    return 2 * length(gap)[1]

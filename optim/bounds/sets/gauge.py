@@ -17,16 +17,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 from functools import cached_property
-from itertools import product
 from typing import final
 
 import numpy as np
 
+from ....models.norms import Norm
 from ....models.rigid_body import RigidBody
 from ....models.types import Array
-from ...norms import Euclidean, LargestComponent, Norm, ThrusterAxes
+from ....verify.exact.ball import length, square_root
+from ....verify.exact.matrix import Matrix, quadratic_form, shifted, unit
 from ..program.constraints import CutConstraint, RateConstraint
-from .chart import Vector, square_root
+from .chart import Vector
 from .momentum_sets import (
     IDENTITY,
     MomentumSet,
@@ -35,13 +36,9 @@ from .momentum_sets import (
     greatest_inertia_above,
     has_equal_inertias,
     least_inertia_below,
-    length_above,
     sharpened,
 )
-from .rate import ExactMatrix, exact_inverse
 from .support_table import SupportTable
-
-_MOST_THRUSTERS = 12
 
 
 @final
@@ -59,7 +56,7 @@ class GaugeSet(MomentumSet):
     def __init__(
         self,
         body: RigidBody,
-        matrices: tuple[ExactMatrix, ...],
+        matrices: tuple[Matrix, ...],
         levels: tuple[Fraction, ...],
         speed: Fraction,
     ) -> None:
@@ -110,11 +107,7 @@ class GaugeSet(MomentumSet):
         return float(np.sqrt((np.einsum("i,kij,j->k", H, M, H) / g).max()) * angle)
 
     def _squares(self, momentum: Vector) -> list[Fraction]:
-        result = []
-        for M, g in zip(self.matrices, self.levels, strict=True):
-            form = sum((momentum[i] * M[i][j] * momentum[j] for i in range(3) for j in range(3)), Fraction(0))
-            result.append(form / g)
-        return result
+        return [quadratic_form(M, momentum) / g for M, g in self.rows]
 
     def size_above(self, momentum: Vector) -> Fraction:
         """Largest sqrt(H'M_k H)/g_k, rounded up."""
@@ -146,61 +139,33 @@ class GaugeSet(MomentumSet):
         """Return the part with |H_i| <= half_widths[i]."""
         matrices, levels = list(self.matrices), list(self.levels)
         for i, width in enumerate(half_widths):
-            rows = [[Fraction(int(j == k == i)) for k in range(3)] for j in range(3)]
-            matrices.append(tuple((row[0], row[1], row[2]) for row in rows))
+            matrices.append(unit(i))
             levels.append(Fraction(width) ** 2)
         return GaugeSet(self.body, tuple(matrices), tuple(levels), self._speed)
 
 
-def torque_vertices(norm: Norm) -> list[Vector]:
-    """Points whose convex hull contains the torques of unit peak (and are among them)."""
-    if isinstance(norm, LargestComponent):
-        return [(Fraction(a), Fraction(b), Fraction(c)) for a, b, c in product((-1, 1), repeat=3)]
-    if isinstance(norm, ThrusterAxes):
-        if len(norm.axes) > _MOST_THRUSTERS:
-            raise ValueError(
-                f"lower bounds take at most {_MOST_THRUSTERS} thrusters, received {len(norm.axes)}"
-            )
-        sums: list[Vector] = []
-        for on in product((0, 1), repeat=len(norm.axes)):
-            parts = [axis for axis, used in zip(norm.axes, on, strict=True) if used]
-            x, y, z = (sum((axis[i] for axis in parts), Fraction(0)) for i in range(3))
-            sums.append((x, y, z))
-        return sums
-    raise TypeError(f"no vertices for the {norm.name} norm")
-
-
 def invariant_set(body: RigidBody, norm: Norm) -> GaugeSet:
-    """Build the invariant set of a torque arrangement other than the Euclidean ball."""
-    if isinstance(norm, Euclidean):
-        raise TypeError("the Euclidean norm has the ball for its invariant set")
-    vertices = torque_vertices(norm)
-    inverse = exact_inverse(body.exact_inertia)
+    """Build the invariant set of a norm whose torques have corners around them.
+
+    Raises
+    ------
+    ValueError
+        If they have none, as those of the Euclidean ball (which is its own invariant set).
+    """
+    vertices = norm.corners()
+    inverse = body.exact_inverse
     low = 1 / greatest_inertia_above(body)
     high = 1 / least_inertia_below(body)
     rows = [IDENTITY]
     if not has_equal_inertias(body):
-        rows += [_combination(inverse, Fraction(1), -low), _combination(inverse, Fraction(-1), high)]
-    levels = [_largest_form(row, vertices) for row in rows]
+        rows += [shifted(inverse, Fraction(1), low), shifted(inverse, Fraction(-1), -high)]
+    levels = [max(quadratic_form(row, t) for t in vertices) for row in rows]
     square = high**2 * levels[0]
     if len(rows) > 1:
         square = min(square, (low + high) * levels[1] + low**2 * levels[0])
     return GaugeSet(body, tuple(rows), tuple(levels), square_root(square)[1])
 
 
-def _combination(inverse: ExactMatrix, factor: Fraction, shift: Fraction) -> ExactMatrix:
-    """Return factor * inverse + shift * I."""
-    rows = [[factor * inverse[i][j] + (shift if i == j else 0) for j in range(3)] for i in range(3)]
-    return tuple((row[0], row[1], row[2]) for row in rows)
-
-
-def _largest_form(M: ExactMatrix, vertices: Sequence[Vector]) -> Fraction:
-    """Largest t'M t over the vertices."""
-    return max(
-        sum((t[i] * M[i][j] * t[j] for i in range(3) for j in range(3)), Fraction(0)) for t in vertices
-    )
-
-
 def longest_vertex(norm: Norm) -> Fraction:
     """Upper bound of the length of a torque of unit peak."""
-    return max(length_above(t) for t in torque_vertices(norm))
+    return max(length(t)[1] for t in norm.corners())

@@ -15,15 +15,14 @@ from typing import final
 import numpy as np
 from numpy.typing import NDArray
 
-from ....models.rigid_body import ExactMatrix, RigidBody
+from ....models.rigid_body import RigidBody
 from ....models.types import Array
-from ....verify.exact.matrix import greatest_eigenvalue_above, least_eigenvalue_below
+from ....verify.exact.ball import length
+from ....verify.exact.matrix import Matrix, greatest_eigenvalue_above, identity, least_eigenvalue_below, rows
 from ..program.constraints import ConeConstraint, RateConstraint
-from .chart import Vector, square_root
+from .chart import Vector
 
-IDENTITY: ExactMatrix = tuple(
-    (Fraction(int(i == 0)), Fraction(int(i == 1)), Fraction(int(i == 2))) for i in range(3)
-)
+IDENTITY = rows(identity(3))
 _CORNERS = np.array([[i, j, k] for i in (-1.0, 1.0) for j in (-1.0, 1.0) for k in (-1.0, 1.0)])
 _QUADRATIC = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
 
@@ -132,7 +131,7 @@ def sharpened(
     return bound
 
 
-Row = tuple[ExactMatrix, Fraction]
+Row = tuple[Matrix, Fraction]
 """(M, L): H'M H <= L."""
 
 
@@ -225,11 +224,11 @@ class UnitBall(MomentumSet):
 
     def size_above(self, momentum: Vector) -> Fraction:
         """Length, rounded up."""
-        return length_above(momentum)
+        return length(momentum)[1]
 
     def size_below(self, momentum: Vector) -> Fraction:
         """Length, rounded down."""
-        return square_root(sum((x * x for x in momentum), Fraction(0)))[0]
+        return length(momentum)[0]
 
     def size_of_rate(self, rate: Fraction) -> Fraction:
         """Greatest principal inertia times the rate."""
@@ -258,8 +257,3 @@ def has_equal_inertias(body: RigidBody) -> bool:
     """Whether the principal inertias are equal, to 1e-6: rows of J^-1 would say no more than |H|^2 does."""
     least, greatest = least_inertia_below(body), greatest_inertia_above(body)
     return greatest - least <= greatest / 10**6
-
-
-def length_above(values: tuple[Fraction, ...]) -> Fraction:
-    """Upper bound of the Euclidean length."""
-    return square_root(sum((x * x for x in values), Fraction(0)))[1]

@@ -1,14 +1,11 @@
-"""Polynomials in three variables: exact (Fraction) for statements, monomial tables for floats.
+"""Polynomials of the three coordinates of a chart: exact for statements, monomial tables for floats.
 
-An exact polynomial is a mapping from exponents (i, j, k) to its coefficient; zero entries are
-dropped. Tables order the exponents by total degree, so that index 0 is the constant, 1 to 3 are
-the coordinates and everything from index 4 on is of second order or higher.
+Tables order the exponents by total degree, so that index 0 is the constant, 1 to 3 are the
+coordinates and everything from index 4 on is of second order or higher.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from fractions import Fraction
 from functools import cache, lru_cache
 from itertools import product
 from math import comb
@@ -16,11 +13,14 @@ from math import comb
 import numpy as np
 
 from ....models.types import Array
+from ....verify.exact.polynomial import Polynomial, Ring
 
 Exponent = tuple[int, int, int]
-Polynomial = dict[Exponent, Fraction]
 
-CONSTANT: Exponent = (0, 0, 0)
+RING = Ring(("x1", "x2", "x3"))
+X = tuple(RING.symbol(name) for name in RING.names)
+"""The coordinates."""
+SQUARED_LENGTH = X[0] * X[0] + X[1] * X[1] + X[2] * X[2]
 AXES: tuple[Exponent, Exponent, Exponent] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
 
 
@@ -31,67 +31,9 @@ def exponents(degree: int) -> tuple[Exponent, ...]:
     return tuple(sorted(every, key=lambda e: (sum(e), tuple(-x for x in e))))
 
 
-def constant(value: Fraction | int) -> Polynomial:
-    """Return the constant polynomial."""
-    return {CONSTANT: Fraction(value)} if value else {}
-
-
-def coordinate(axis: int, slope: Fraction | int = 1) -> Polynomial:
-    """Return slope times the coordinate of that axis."""
-    return {AXES[axis]: Fraction(slope)}
-
-
-def total(*terms: Polynomial) -> Polynomial:
-    """Return the sum."""
-    result: Polynomial = {}
-    for term in terms:
-        for e, c in term.items():
-            result[e] = result.get(e, Fraction(0)) + c
-    return {e: c for e, c in result.items() if c}
-
-
-def scaled(p: Polynomial, factor: Fraction | int) -> Polynomial:
-    """Return factor * p."""
-    return {e: factor * c for e, c in p.items()} if factor else {}
-
-
-def multiplied(p: Polynomial, q: Polynomial) -> Polynomial:
-    """Return p q."""
-    result: Polynomial = {}
-    for (a, b, c), x in p.items():
-        for (d, e, f), y in q.items():
-            key = (a + d, b + e, c + f)
-            result[key] = result.get(key, Fraction(0)) + x * y
-    return {e: c for e, c in result.items() if c}
-
-
-def partial(p: Polynomial, axis: int) -> Polynomial:
-    """Return the derivative along one coordinate."""
-    result: Polynomial = {}
-    for e, c in p.items():
-        if e[axis]:
-            lowered = list(e)
-            lowered[axis] -= 1
-            result[(lowered[0], lowered[1], lowered[2])] = e[axis] * c
-    return result
-
-
-def shifted(p: Polynomial, x: Sequence[Fraction]) -> Polynomial:
-    """Return t -> p(x + t): the Taylor coefficients at x."""
-    result: Polynomial = {}
-    for e, c in p.items():
-        for low in product(*(range(n + 1) for n in e)):
-            factor = c
-            for axis in range(3):
-                factor *= comb(e[axis], low[axis]) * x[axis] ** (e[axis] - low[axis])
-            key = (low[0], low[1], low[2])
-            result[key] = result.get(key, Fraction(0)) + factor
-    return {e: c for e, c in result.items() if c}
-
-
-def as_table(p: Mapping[Exponent, Fraction], degree: int) -> Array:
+def as_table(p: Polynomial, degree: int) -> Array:
     """Coefficients rounded to the nearest float in the order of `exponents(degree)`."""
-    return np.array([float(p.get(e, Fraction(0))) for e in exponents(degree)])
+    return np.array([float(p.coefficient(e)) for e in exponents(degree)])
 
 
 @lru_cache(maxsize=8)

@@ -14,38 +14,24 @@ from fractions import Fraction
 import numpy as np
 
 from ....models.types import Array
-from . import polynomials as poly
-from .chart import Vector, squared_length
-from .polynomials import Exponent, Polynomial
-
-ExactMatrix = tuple[Vector, ...]
+from ....verify.exact.matrix import Matrix
+from ....verify.exact.polynomial import Polynomial
+from .polynomials import RING, SQUARED_LENGTH, Exponent, X
 
 
 def momentum_rate_polynomials(
-    potential: Polynomial, inverse_inertia: ExactMatrix, scale: Fraction
+    potential: Polynomial, inverse_inertia: Matrix, scale: Fraction
 ) -> tuple[Polynomial, Polynomial, Polynomial]:
     """Return the three components of v for a potential in the scaled coordinates x / scale, in those."""
-    gradient = [poly.partial(potential, axis) for axis in range(3)]
-    x = [poly.coordinate(axis) for axis in range(3)]
-    square = squared_length()
-    dot = poly.total(*(poly.multiplied(x[i], gradient[i]) for i in range(3)))
+    gradient = [potential.derivative(axis) for axis in range(3)]
+    along = X[0] * gradient[0] + X[1] * gradient[1] + X[2] * gradient[2]
+    straight = 1 / scale - SQUARED_LENGTH * scale
     body = []
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
-        cross = poly.total(
-            poly.multiplied(x[j], gradient[k]), poly.scaled(poly.multiplied(x[k], gradient[j]), -1)
-        )
-        body.append(
-            poly.total(
-                poly.scaled(gradient[i], 1 / scale),
-                poly.scaled(poly.multiplied(square, gradient[i]), -scale),
-                poly.scaled(cross, -2),
-                poly.scaled(poly.multiplied(x[i], dot), 2 * scale),
-            )
-        )
-    rows = [
-        poly.total(*(poly.scaled(body[j], inverse_inertia[i][j] / 4) for j in range(3))) for i in range(3)
-    ]
+        cross = X[j] * gradient[k] - X[k] * gradient[j]
+        body.append(straight * gradient[i] - cross * 2 + X[i] * along * (2 * scale))
+    rows = [sum((body[j] * (row[j] / 4) for j in range(3)), RING.constant(0)) for row in inverse_inertia]
     return rows[0], rows[1], rows[2]
 
 
@@ -75,16 +61,3 @@ def _monomials(points: Array, table: tuple[Exponent, ...]) -> tuple[Array, Array
         lowered = E[:, axis] * powers[:, axis, np.maximum(E[:, axis] - 1, 0)]
         np.multiply(lowered * factors[(axis + 1) % 3], factors[(axis + 2) % 3], out=gradient[:, axis])
     return factors[0] * factors[1] * factors[2], gradient
-
-
-def exact_inverse(rows: ExactMatrix) -> ExactMatrix:
-    """Inverse of a 3 by 3 matrix, exactly."""
-    a = rows
-    cofactor = [[Fraction(0)] * 3 for _ in range(3)]
-    for i in range(3):
-        for j in range(3):
-            r, s, c, d = (j + 1) % 3, (j + 2) % 3, (i + 1) % 3, (i + 2) % 3
-            cofactor[i][j] = a[r][c] * a[s][d] - a[r][d] * a[s][c]
-    det = sum((a[0][k] * cofactor[k][0] for k in range(3)), Fraction(0))
-    out = [[entry / det for entry in row] for row in cofactor]
-    return tuple((row[0], row[1], row[2]) for row in out)

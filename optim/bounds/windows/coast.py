@@ -13,12 +13,12 @@ import numpy as np
 from ....models.laws import FreeMotion
 from ....models.schedule.polynomial import ZERO
 from ....models.simulation import Phase
-from ....verify.exact.ball import ball, exact_above
+from ....verify.exact.ball import ball, exact_above, length
+from ....verify.exact.rounding import grid_above, grid_near
 from ....verify.flow.run_enclosure import EnclosedRun, ExactStart, NoEnclosureError
 from ...problem import TransferProblem
-from ..sets.chart import Quaternion, square_root
+from ..sets.chart import Quaternion
 
-_FINE = 2**64
 _MARGIN = Fraction(1, 2**36)
 """Turn allowed besides, rad, for the rounding of whoever checks."""
 _INSTANTS = 16
@@ -79,9 +79,8 @@ def _coast(until: Fraction, balls: list[Any]) -> Coast:
     """
     middle, r = [], Fraction(0)
     for x in balls:
-        rounded = Fraction(round(exact_above(x) * _FINE), _FINE)
+        rounded = grid_near(exact_above(x), 64)
         middle.append(rounded)
         r += exact_above(abs(x - ball(rounded)))
-    length = square_root(sum((c * c for c in middle), Fraction(0)))[0] - r
-    turn = Fraction(((4 * r / length + _MARGIN) * _FINE).__ceil__(), _FINE)
+    turn = grid_above(4 * r / (length(middle)[0] - r) + _MARGIN, 64)
     return Coast(until, (middle[0], middle[1], middle[2], middle[3]), turn)

@@ -25,16 +25,17 @@ from typing import final
 
 import numpy as np
 
-from ....models.rigid_body import RigidBody, leading_minors
+from ....models.rigid_body import RigidBody
 from ....models.schedule import PiecewisePolynomial
 from ....models.schedule import polynomial as univariate
-from ..sets.chart import square_root
+from ....verify.exact.ball import square_root
+from ....verify.exact.bisection import bisected
+from ....verify.exact.matrix import Matrix, combination, is_positive_definite, shifted, unit
+from ....verify.exact.rounding import grid_above
 from ..sets.gauge import GaugeSet
-from ..sets.rate import ExactMatrix, exact_inverse
 from .travel import WindowTravel
 
 CELLS = 96
-_DENOMINATOR = 2**40
 _MARGIN = Fraction(1, 10**7)
 
 
@@ -119,7 +120,7 @@ def _cells(window: PiecewisePolynomial, until: Fraction) -> list[Cell]:
 
 def _coarser(x: Fraction) -> Fraction:
     """Round up to a short binary fraction."""
-    return Fraction((x * _DENOMINATOR).__ceil__(), _DENOMINATOR)
+    return grid_above(x, 40)
 
 
 @final
@@ -177,20 +178,20 @@ def component_bounds(
 
 def momenta_width(momenta: GaugeSet, axis: int) -> tuple[Fraction, tuple[Fraction, ...]]:
     """Upper bound of |X_axis| over the set, and the multipliers that prove it."""
-    square, multipliers = _dual_bound(_unit(axis), list(momenta.matrices), list(momenta.levels), None)
+    square, multipliers = _dual_bound(unit(axis), list(momenta.matrices), list(momenta.levels), None)
     return square_root(square)[1], multipliers
 
 
-def gyroscopic_form(body: RigidBody, axis: int) -> ExactMatrix:
+def gyroscopic_form(body: RigidBody, axis: int) -> Matrix:
     """Symmetric G with X'G X = (X x J^-1 X)_axis."""
-    A = exact_inverse(body.exact_inertia)
+    A = body.exact_inverse
     j, k = (axis + 1) % 3, (axis + 2) % 3
     G = [[Fraction(0)] * 3 for _ in range(3)]
     for m in range(3):
         for row, column, value in ((j, m, A[k][m]), (k, m, -A[j][m])):
             G[row][column] += value / 2
             G[column][row] += value / 2
-    return tuple((row[0], row[1], row[2]) for row in G)
+    return tuple(map(tuple, G))
 
 
 def gyroscopic_bound(
@@ -198,7 +199,7 @@ def gyroscopic_bound(
 ) -> tuple[Fraction, tuple[tuple[Fraction, ...], tuple[Fraction, ...]]]:
     """Upper bound of |X'G X| over X in the set, |X_j| <= B_j, |X_axis| >= 1; multipliers of both signs."""
     G = gyroscopic_form(momenta.body, axis)
-    units = [_unit(j) for j in range(3)]
+    units = [unit(j) for j in range(3)]
     matrices = [*momenta.matrices, *units]
     levels = [*momenta.levels, *(b * b for b in B)]
     none = (Fraction(0),) * (len(matrices) + 1)
@@ -206,38 +207,29 @@ def gyroscopic_bound(
         return Fraction(0), (none, none)
     both = []
     for sign in (1, -1):
-        x, y, z = ((sign * row[0], sign * row[1], sign * row[2]) for row in G)
-        both.append(_dual_bound((x, y, z), matrices, levels, units[axis]))
+        both.append(_dual_bound(shifted(G, Fraction(sign), Fraction(0)), matrices, levels, units[axis]))
     return _coarser(max(both[0][0], both[1][0])), (both[0][1], both[1][1])
 
 
 def _dual_bound(
-    G: ExactMatrix, matrices: list[ExactMatrix], levels: list[Fraction], floor: ExactMatrix | None
+    G: Matrix, matrices: list[Matrix], levels: list[Fraction], floor: Matrix | None
 ) -> tuple[Fraction, tuple[Fraction, ...]]:
     """Sum l_k g_k^2 - rho with sum l_k M_k - rho floor - G >= 0, proved by minors; l (and rho)."""
     multipliers = _solve_dual(G, matrices, levels, floor)
-    rows = matrices if floor is None else [*matrices, _negated(floor)]
+    rows = matrices if floor is None else [*matrices, shifted(floor, Fraction(-1), Fraction(0))]
     values = levels if floor is None else [*levels, Fraction(-1)]
     slack = Fraction(max(float(m) for m in multipliers) + 1e-6) / 10**9
     for _ in range(40):
         lifted = [multipliers[0] + slack, *multipliers[1:]]
-        gap = [
-            [sum((m * M[i][j] for m, M in zip(lifted, rows, strict=True)), -G[i][j]) for j in range(3)]
-            for i in range(3)
-        ]
-        if all(minor > 0 for minor in leading_minors(gap)):
+        if is_positive_definite(combination([*lifted, Fraction(-1)], [*rows, G])):
             bound = sum((m * g for m, g in zip(lifted, values, strict=True)), Fraction(0))
             return max(bound, Fraction(0)), tuple(lifted)
         slack *= 4
     raise ArithmeticError("no multipliers prove a bound of the quadratic form")
 
 
-def _negated(M: ExactMatrix) -> ExactMatrix:
-    return tuple((-row[0], -row[1], -row[2]) for row in M)
-
-
 def _solve_dual(
-    G: ExactMatrix, matrices: list[ExactMatrix], levels: list[Fraction], floor: ExactMatrix | None
+    G: Matrix, matrices: list[Matrix], levels: list[Fraction], floor: Matrix | None
 ) -> list[Fraction]:
     """Multipliers by a small semidefinite program (only guesses: they are checked afterwards)."""
     import clarabel
@@ -263,11 +255,6 @@ def _solve_dual(
     return [Fraction(max(float(value), 0.0)) for value in solution.x]
 
 
-def _unit(axis: int) -> ExactMatrix:
-    rows = [[Fraction(int(i == j == axis)) for j in range(3)] for i in range(3)]
-    return tuple((row[0], row[1], row[2]) for row in rows)
-
-
 def peak_from_components(
     sides: TransferSides, bounds: ComponentBounds, beta: Widths, travel: Fraction
 ) -> Fraction:
@@ -280,12 +267,9 @@ def peak_from_components(
         factors = np.minimum(1 + kappa * p * ratio[:, None], widths) / box
         return float(p * (area * np.maximum(1.0, factors.max(axis=1))).sum())
 
-    low, high = 0.0, float(bounds.trial)
+    high = float(bounds.trial)
     if approximate(high) > float(travel):
-        for _ in range(60):
-            middle = (low + high) / 2
-            low, high = (middle, high) if approximate(middle) <= float(travel) else (low, middle)
-        high = low
+        high, _ = bisected(lambda p: approximate(p) <= float(travel), 0.0, high, steps=60)
     # The float figure only proposes; each candidate is decided in exact arithmetic.
     for margin in (0.0, 1e-12, 1e-10, 1e-8, 1e-6):
         candidate = min(Fraction(high * (1 - margin)), bounds.trial)

@@ -26,13 +26,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
-from typing import final
+from typing import Any, final
 
-from ....verify.exact.ball import ball, exact_above
-from ....verify.exact.matrix import greatest_eigenvalue_above
-from ..sets.chart import Vector, square_root
-from ..sets.momentum_sets import MomentumSet, length_above
-from ..sets.rate import ExactMatrix, exact_inverse
+from ....verify.exact.ball import exponential_above, length, square_root
+from ....verify.exact.matrix import greatest_eigenvalue_above, of, skew, trace
+from ....verify.exact.rounding import grid_above
+from ..sets.chart import Vector
+from ..sets.momentum_sets import IDENTITY, MomentumSet
 from .travel import WindowTravel
 
 CELLS = 32
@@ -40,8 +40,6 @@ CELLS = 32
 
 MAX_GROWTH = 60
 """Exponent of a growth up to which a coast is of any use; the checker ends at 64."""
-
-_FINE = 2**64
 
 
 @final
@@ -66,24 +64,17 @@ class Growth:
 
     def factor_above(self, duration: Fraction) -> Fraction:
         """Upper bound of (exp(mu u) + exp(nu u))/2."""
-        return (
-            _exponential_above(self.distance * duration) + _exponential_above(self.momentum * duration)
-        ) / 2
+        return (exponential_above(self.distance * duration) + exponential_above(self.momentum * duration)) / 2
 
 
 def growth_of_deviations(momenta: MomentumSet, momentum: Vector) -> Growth:
     """Bound mu and nu for a start of the given momentum J w, N m s."""
-    J = momenta.body.exact_inertia
-    inverse = exact_inverse(J)
-    units = [_skew(_unit(i)) for i in range(3)]
-    turning = [_skew(_times(inverse, _unit(i))) for i in range(3)]
-    stretch = []
-    for h, w in zip(units, turning, strict=True):
-        stretch.append(_difference(_product(h, inverse), _product(J, _product(w, inverse))))
-    size = length_above(momentum)
-    return Growth(
-        _fastest(momenta, stretch) * size, _fastest(momenta, [_negative(w) for w in turning]) * size
-    )
+    J, inverse = of(momenta.body.exact_inertia), of(momenta.body.exact_inverse)
+    units = [skew(row) for row in IDENTITY]
+    turning = [skew(row) for row in momenta.body.exact_inverse]
+    stretch = [h * inverse - J * w * inverse for h, w in zip(units, turning, strict=True)]
+    size = length(momentum)[1]
+    return Growth(_fastest(momenta, stretch) * size, _fastest(momenta, [-w for w in turning]) * size)
 
 
 def deviation_above(
@@ -95,64 +86,23 @@ def deviation_above(
     return sum(parts, Fraction(0))
 
 
-def _fastest(momenta: MomentumSet, X: list[ExactMatrix]) -> Fraction:
+def _fastest(momenta: MomentumSet, X: list[Any]) -> Fraction:
     """Largest growth of any row, for |h| = 1, rounded up."""
     rows = momenta.rows
-    return max(_row_growth(M, X) * rows[0][1] / level for M, level in rows)
+    return max(_row_growth(of(M), X) * rows[0][1] / level for M, level in rows)
 
 
-def _row_growth(M: ExactMatrix, X: list[ExactMatrix]) -> Fraction:
+def _row_growth(M: Any, X: list[Any]) -> Fraction:
     """Upper bound of the largest eigenvalue of the symmetric part of M sum h_i X_i over |h| = 1."""
-    parts = [_symmetric(_product(M, x)) for x in X]
-    gram = [[_inner(p, q) for q in parts] for p in parts]
+    parts = [(M * x + (M * x).transpose()) / 2 for x in X]
+    gram = [[trace(p * q) for q in parts] for p in parts]
     if not any(any(row) for row in gram):
         return Fraction(0)
     unit = _power_of_two_near(gram[0][0] + gram[1][1] + gram[2][2]) // 2
     small = [[x / Fraction(4) ** unit for x in row] for row in gram]  # whatever the units of the inertia
     root = square_root(Fraction(2, 3) * greatest_eigenvalue_above(small))[1]
-    return Fraction((root * _FINE).__ceil__(), _FINE) * Fraction(2) ** unit
+    return grid_above(root, 64) * Fraction(2) ** unit
 
 
 def _power_of_two_near(x: Fraction) -> int:
     return x.numerator.bit_length() - x.denominator.bit_length()
-
-
-def _exponential_above(x: Fraction) -> Fraction:
-    return exact_above(ball(x).exp())
-
-
-def _unit(axis: int) -> Vector:
-    return Fraction(int(axis == 0)), Fraction(int(axis == 1)), Fraction(int(axis == 2))
-
-
-def _skew(a: Vector) -> ExactMatrix:
-    """S(a) with S(a) b = a x b."""
-    zero = Fraction(0)
-    return (zero, -a[2], a[1]), (a[2], zero, -a[0]), (-a[1], a[0], zero)
-
-
-def _times(A: ExactMatrix, x: Vector) -> Vector:
-    y = [sum((a * b for a, b in zip(row, x, strict=True)), Fraction(0)) for row in A]
-    return y[0], y[1], y[2]
-
-
-def _product(A: ExactMatrix, B: ExactMatrix) -> ExactMatrix:
-    columns = [_times(A, (B[0][j], B[1][j], B[2][j])) for j in range(3)]
-    return tuple((columns[0][i], columns[1][i], columns[2][i]) for i in range(3))
-
-
-def _difference(A: ExactMatrix, B: ExactMatrix) -> ExactMatrix:
-    return tuple((a[0] - b[0], a[1] - b[1], a[2] - b[2]) for a, b in zip(A, B, strict=True))
-
-
-def _negative(A: ExactMatrix) -> ExactMatrix:
-    return tuple((-a[0], -a[1], -a[2]) for a in A)
-
-
-def _symmetric(A: ExactMatrix) -> ExactMatrix:
-    rows = [[(A[i][j] + A[j][i]) / 2 for j in range(3)] for i in range(3)]
-    return tuple((row[0], row[1], row[2]) for row in rows)
-
-
-def _inner(A: ExactMatrix, B: ExactMatrix) -> Fraction:
-    return sum((A[i][j] * B[i][j] for i in range(3) for j in range(3)), Fraction(0))

@@ -22,6 +22,8 @@ from typing import final
 
 from ....models.schedule import PiecewisePolynomial
 from ....models.schedule import polynomial as poly
+from ....verify.exact.bisection import bisected
+from ....verify.exact.rounding import grid_near
 
 
 @final
@@ -106,18 +108,14 @@ class WindowTravel:
 
     def instant(self, opened: Fraction) -> Fraction:
         """Some t at which up(t) is near `opened`, a short binary fraction (clamped to [0, horizon])."""
-        low, high = Fraction(0), self.horizon
         if opened <= 0:
-            return low
+            return Fraction(0)
         if opened >= self.total:
-            return high
+            return self.horizon
         knots = self.window.knots
         i = min(bisect_right(self._prefix[0], opened) - 1, len(knots) - 2)
-        low, high = knots[i], knots[i + 1]
-        for _ in range(40):
-            middle = (low + high) / 2
-            low, high = (middle, high) if self.up(middle) <= opened else (low, middle)
-        return Fraction(round(low * 2**40), 2**40) if 0 <= low <= self.horizon else low
+        found = bisected(lambda t: self.up(t) <= opened, knots[i], knots[i + 1], steps=40)
+        return grid_near(found[0], 40)
 
 
 @final
@@ -167,11 +165,3 @@ def momentum_peak(windows: WindowTravel, start: Fraction, end: Fraction) -> Frac
     if windows.total == 0:
         return Fraction(0)
     return max((start - end) / windows.total, Fraction(0))
-
-
-def rounded_down(x: Fraction) -> float:
-    """Largest float not above x."""
-    from math import inf, nextafter
-
-    value = float(x)
-    return value if Fraction(value) <= x else nextafter(value, -inf)

@@ -21,7 +21,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....models.types import Array
-from ...norms import Euclidean
 from ..solvers.scp import LocalAnswer
 
 GAUSS_NODES, GAUSS_WEIGHTS = (
@@ -117,65 +116,77 @@ def _moments(profile: Array) -> Array:
     return np.stack([(profile / (power + j + 1)).sum(axis=1) for j in range(3)], axis=1)
 
 
-def switch_points(sigma: SwitchingFunction, cell: int) -> list[float]:
-    """Fractions inside one open cell where the best control switches.
+def switch_points(sigma: SwitchingFunction, cell: int) -> list[tuple[float, int]]:
+    """Fractions inside one open cell where the best control switches, and which control; -1: a ball's.
 
-    With limits on components (or least impulse, off or full) a switch shows as a value strictly
+    With limits on each control (or least impulse, off or full) a switch shows as a value strictly
     between the limits: the mean of the two sides, which says where between them the switch lies.
-    (The zero of sigma does not: the solver puts its mean over such a cell at zero.) With a peak in
-    the Euclidean norm it is where |sigma| dips, because the direction swings round there.
+    (The zero of sigma does not: the solver puts its mean over such a cell at zero.) With a peak of a
+    ball's length it is where |sigma| dips, because the direction swings round there.
     """
     answer, norm = sigma.answer, sigma.answer.shooting.scaled.problem.norm
-    switch_fraction = answer.goal.switch_fraction(norm, answer.trajectory.control[cell], answer.value)
-    if switch_fraction is None:
-        grid = np.linspace(0.0, 1.0, 33)
-        size = np.linalg.norm(sigma.at(grid)[cell], axis=1)
-        k = int(np.argmin(size))
-        turning = 0 < k < 32 and size[k] < 0.5 * min(size[0], size[-1])
-        return [float(grid[k])] if turning else []
+    fraction = answer.goal.switch_fraction(norm, answer.trajectory.control[cell], answer.value)
     ends = answer.goal.switching_function(norm, sigma.at(np.array([0.0, 1.0]))[cell])
-    rising = ends[1] - ends[0]
-    inside = (switch_fraction > 1e-3) & (switch_fraction < 1.0 - 1e-3)
-    return sorted(
-        float(f if up <= 0 else 1.0 - f)
-        for f, up in zip(switch_fraction[inside], rising[inside], strict=True)
-    )
+    found = [
+        (float(f if up <= 0 else 1.0 - f), j)
+        for f, up, j in zip(fraction, ends[1] - ends[0], answer.goal.switches(norm), strict=True)
+        if 1e-3 < f < 1.0 - 1e-3
+    ]
+    return sorted(found + [(s, -1) for s in _turning_points(sigma, cell)])
+
+
+def _turning_points(sigma: SwitchingFunction, cell: int) -> list[float]:
+    """Fractions inside one open cell where a ball's best direction swings round."""
+    found, grid = [], np.linspace(0.0, 1.0, 33)
+    for at in sigma.answer.goal.turning(sigma.answer.shooting.scaled.problem.norm):
+        size = np.linalg.norm(sigma.at(grid)[cell][:, at], axis=1)
+        k = int(np.argmin(size))
+        if 0 < k < 32 and size[k] < 0.5 * min(size[0], size[-1]):
+            found.append(float(grid[k]))
+    return found
 
 
 def switch_times(sigma: SwitchingFunction) -> tuple[tuple[float, int], ...]:
-    """Instants (s) and components at which the best control switches inside a window; -1: the direction.
+    """Instants (s) and controls at which the best control switches inside a window; -1: a ball's.
 
-    A component switches inside a cell where its value lies between the limits, and at an edge
+    A control switches inside a cell where its value lies between the limits, and at an edge
     where it goes from one limit to the other. Changes across a closed arc are not switches.
     """
     answer = sigma.answer
     norm = answer.shooting.scaled.problem.norm
     unit = answer.shooting.scaled.units.time
-    inside = [(i, s) for i in range(len(sigma.cells)) for s in switch_points(sigma, i)]
+    found = [
+        (float(sigma.start[i] + s * sigma.length[i]), -1)
+        for i in range(len(sigma.cells))
+        for s in _turning_points(sigma, i)
+    ]
     high = answer.goal.switch_fraction(norm, answer.trajectory.control, answer.value)
-    if high is None:
-        return tuple((float(sigma.start[i] + s * sigma.length[i]) * unit, -1) for i, s in inside)
+    for column, control in enumerate(answer.goal.switches(norm)):
+        found += [(t, control) for t in _throws(sigma, high, column)]
+    return tuple(sorted((t * unit, j) for t, j in found))
+
+
+def _throws(sigma: SwitchingFunction, high: Array, j: int) -> list[float]:
+    """Instants, solver time, at which switch j is thrown inside the windows."""
     found = []
-    for j in range(high.shape[1]):
-        last: tuple[float, float] | None = None
-        for i in range(len(sigma.cells)):
-            joined = i > 0 and sigma.cells[i] == sigma.cells[i - 1] + 1
-            switch_fraction = float(high[i, j])
-            start, end = float(sigma.start[i]), float(sigma.start[i] + sigma.length[i])
-            if not joined:
-                last = None
-            if 1e-3 < switch_fraction < 1 - 1e-3:
-                # between the limits: the switch lies inside, nearer the limit held longer
-                after = _next_side(high, i, j)
-                part = switch_fraction if after < 0.5 else 1.0 - switch_fraction
-                found.append((start + part * (end - start), j))
-                last = (end, after)
-                continue
-            if last is not None and abs(switch_fraction - last[1]) > 0.5:
-                found.append((start, j))
-            last = (end, switch_fraction)
-    whole = isinstance(norm, Euclidean)
-    return tuple(sorted((t * unit, -1 if whole else j) for t, j in found))
+    last: tuple[float, float] | None = None
+    for i in range(len(sigma.cells)):
+        joined = i > 0 and sigma.cells[i] == sigma.cells[i - 1] + 1
+        switch_fraction = float(high[i, j])
+        start, end = float(sigma.start[i]), float(sigma.start[i] + sigma.length[i])
+        if not joined:
+            last = None
+        if 1e-3 < switch_fraction < 1 - 1e-3:
+            # between the limits: the switch lies inside, nearer the limit held longer
+            after = _next_side(high, i, j)
+            part = switch_fraction if after < 0.5 else 1.0 - switch_fraction
+            found.append(start + part * (end - start))
+            last = (end, after)
+            continue
+        if last is not None and abs(switch_fraction - last[1]) > 0.5:
+            found.append(start)
+        last = (end, switch_fraction)
+    return found
 
 
 def _next_side(high: Array, cell: int, j: int) -> float:

@@ -10,7 +10,6 @@ from typing import final
 import numpy as np
 
 from ....models.schedule.polynomial import antiderivative, evaluate
-from ...norms import Euclidean, LargestComponent, ThrusterAxes
 from ...problem import TransferProblem
 
 
@@ -56,7 +55,7 @@ def absorption_peak(problem: TransferProblem) -> float:
     """
     momentum = float(np.linalg.norm(problem.start_momentum))
     allowed = float(problem.body.principal_inertias[-1]) * float(problem.terminal.rate)
-    return max(0.0, momentum - allowed) / (_reach(problem) * float(open_time(problem)))
+    return max(0.0, momentum - allowed) / (problem.norm.reach * float(open_time(problem)))
 
 
 def travel_peak(problem: TransferProblem) -> float:
@@ -72,7 +71,7 @@ def travel_peak(problem: TransferProblem) -> float:
     inertias = problem.body.principal_inertias
     left = float(inertias[-1]) * float(problem.terminal.rate) * float(problem.horizon)
     path = float(inertias[0]) * angle - left
-    return max(0.0, path) / (_reach(problem) * _travel_integral(problem))
+    return max(0.0, path) / (problem.norm.reach * _travel_integral(problem))
 
 
 def _travel_integral(problem: TransferProblem) -> float:
@@ -93,28 +92,18 @@ def _travel_integral(problem: TransferProblem) -> float:
     return value * (1.0 + 1e-3)
 
 
-def _reach(problem: TransferProblem) -> float:
-    """Largest Euclidean torque of unit effort, N m (an upper bound for one-sided thrusters)."""
-    norm = problem.norm
-    if isinstance(norm, Euclidean):
-        return 1.0
-    if isinstance(norm, LargestComponent):
-        return math.sqrt(3.0)
-    return float(np.linalg.norm(norm.control_matrix, axis=0).sum())
-
-
 def missing_direction(problem: TransferProblem) -> Explanation | None:
-    """Say along which axis one-sided thrusters cannot push, if there is one; it proves nothing.
+    """Say along which axis the thrusters cannot push, if there is one; it proves nothing.
 
     Transfers that need no push that way are made all the same: look at it after a search has failed.
     """
-    norm = problem.norm
-    if not isinstance(norm, ThrusterAxes) or norm.spans_all_directions:
+    missing = problem.norm.missing_direction
+    if missing is None:
         return None
-    missing = norm.facets[0][int(np.argmin(norm.facets[1]))]
+    who = "one-sided thrusters" if problem.norm.is_one_sided else "thrusters"
     axis = ", ".join(f"{round(float(x), 3) + 0.0:.3f}" for x in missing)
     return Explanation(
-        f"no start led to a feasible transfer, and the one-sided thrusters cannot push along ({axis}) at all",
+        f"no start led to a feasible transfer, and the {who} cannot push along ({axis}) at all",
         "add a thruster that pushes that way, so that every torque can be made; or try more starts",
         impossible=False,
         certain=False,

@@ -15,7 +15,6 @@ from typing import final
 import numpy as np
 
 from ....models.types import Array
-from ...norms import ThrusterAxes
 from ...problem import TransferProblem
 from ..solvers.goal import LeastImpulse
 from ..solvers.scp import LocalAnswer, SequentialConvex
@@ -87,8 +86,8 @@ def minimum_impulse(
 ) -> LeastImpulseFound:
     """Find the least integral of w consumption(torque) over transfers with peak(torque(t)) <= limit w(t).
 
-    Consumption is the torque's length (Euclidean), the sum of its components' sizes (each axis
-    has thrusters of its own) or the sum of the thruster forces.
+    Consumption is the norm's own: the torque's length (Euclidean), the sum of its components' sizes
+    (each axis has thrusters of its own) or the sum of the thruster forces.
 
     Parameters
     ----------
@@ -182,7 +181,7 @@ def _starts(
 def _within(shooting: Shooting, control: Array, limit: float) -> Array:
     """Controls shortened to the limit (and one-sided thrust clipped at zero)."""
     norm = shooting.scaled.problem.norm
-    control = np.maximum(control, 0.0) if isinstance(norm, ThrusterAxes) else control
+    control = norm.clipped(control)
     effort = np.maximum(norm.effort(control), 1e-300)
     most = limit / shooting.scaled.units.control
     return np.asarray(control * np.minimum(1.0, most / effort)[:, None])

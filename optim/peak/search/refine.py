@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....models.types import Array
-from ...norms import Euclidean
 from ..check.switching import SwitchingFunction, switch_points
 from ..solvers.scp import LocalAnswer
 from ..transcription.mesh import split
@@ -45,12 +44,13 @@ def _cuts(sigma: SwitchingFunction, cell: int, parts: int, target: float) -> lis
     """Where to cut one cell; nowhere if it loses less than its fair share."""
     if parts < 2 or sigma.length[cell] < MIN_CUT or sigma.loss[cell] < 0.05 * target / len(sigma.loss):
         return []
-    switches = [s for s in switch_points(sigma, cell) if 1e-3 < s < 1 - 1e-3]
+    inside = [(s, j) for s, j in switch_points(sigma, cell) if 1e-3 < s < 1 - 1e-3]
+    brackets, turns = _bracketed([s for s, j in inside if j >= 0]), [s for s, j in inside if j < 0]
     norm = sigma.answer.shooting.scaled.problem.norm
-    if switches and not isinstance(norm, Euclidean):
-        return _apart(_bracketed(switches))
+    if any(j >= 0 for _, j in inside) and not any(block.is_round for block in norm.blocks):
+        return _apart(brackets)
     equal = [j / parts for j in range(1, parts)]
-    return _apart(sorted(equal + switches))
+    return _apart(sorted(equal + turns + brackets))
 
 
 def _bracketed(switches: list[float]) -> list[float]:

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, final
 
 import numpy as np
 
+from ....models.norms import Norm
 from ....models.types import Array
-from ...norms import Euclidean, LargestComponent, Norm
-from .optimality import control_support, dual_value, linearised_offset
+from .optimality import dual_value, linearised_offset
 
 if TYPE_CHECKING:
     from ..transcription.shooting import Rollout, Sensitivity, Shooting
@@ -51,12 +51,20 @@ class Goal(ABC):
         """What a `hamiltonian_gain` is divided by to be a fraction of the value."""
 
     @abstractmethod
-    def switch_fraction(self, norm: Norm, control: Array, value: float) -> Array | None:
-        """How far each switch is thrown, 0 to 1, (..., m) -> (..., j); None without switches."""
+    def switches(self, norm: Norm) -> tuple[int, ...]:
+        """The control that each of j switches throws; -1 for the length of a ball's controls."""
+
+    @abstractmethod
+    def switch_fraction(self, norm: Norm, control: Array, value: float) -> Array:
+        """How far each switch is thrown, 0 to 1, (..., m) -> (..., j)."""
 
     @abstractmethod
     def switching_function(self, norm: Norm, costate: Array) -> Array:
         """Rise of the pull, (..., m) -> (..., j): through a threshold where a switch is thrown."""
+
+    @abstractmethod
+    def turning(self, norm: Norm) -> tuple[slice, ...]:
+        """Controls that have no switch, because their direction turns instead."""
 
 
 @final
@@ -81,7 +89,7 @@ class LeastPeak(Goal):
     def hamiltonian_gain(self, norm: Norm, costate: Array, flow: Array) -> Array:
         """Support of the pull: what unit effort does."""
         del flow
-        return control_support(norm, costate)
+        return norm.control_support(costate)
 
     def gain(self, norm: Norm, costate: Array, flow: Array, control: Array, value: float) -> Array:
         """Pull . control for each unit of the peak."""
@@ -93,17 +101,26 @@ class LeastPeak(Goal):
         del value
         return 1.0
 
-    def switch_fraction(self, norm: Norm, control: Array, value: float) -> Array | None:
-        """From one limit to the other; a ball has no switches, its direction turns."""
-        if isinstance(norm, Euclidean):
-            return None
-        low = -1.0 if isinstance(norm, LargestComponent) else 0.0
-        return np.asarray((control / value - low) / (1.0 - low))
+    def switches(self, norm: Norm) -> tuple[int, ...]:
+        """One for each control with limits of its own."""
+        return tuple(j for block, at in norm.parts if not block.is_round for j in range(at.start, at.stop))
+
+    def switch_fraction(self, norm: Norm, control: Array, value: float) -> Array:
+        """From one limit to the other."""
+        found = []
+        for block, at in norm.parts:
+            if not block.is_round:
+                low = 0.0 if block.is_one_sided else -1.0
+                found.append((control[..., at] / value - low) / (1.0 - low))
+        return _side_by_side(found, control)
 
     def switching_function(self, norm: Norm, costate: Array) -> Array:
-        """The pull on each component."""
-        del norm
-        return costate
+        """The pull on each control with limits of its own."""
+        return _side_by_side([costate[..., at] for block, at in norm.parts if not block.is_round], costate)
+
+    def turning(self, norm: Norm) -> tuple[slice, ...]:
+        """Every ball."""
+        return tuple(at for block, at in norm.parts if block.is_round)
 
 
 @final
@@ -151,13 +168,33 @@ class LeastImpulse(Goal):
         """The value."""
         return max(value, 1e-300)
 
-    def switch_fraction(self, norm: Norm, control: Array, value: float) -> Array | None:
+    def switches(self, norm: Norm) -> tuple[int, ...]:
+        """One for each ball and each other control."""
+        found = [[-1] if block.is_round else list(range(at.start, at.stop)) for block, at in norm.parts]
+        return tuple(j for part in found for j in part)
+
+    def switch_fraction(self, norm: Norm, control: Array, value: float) -> Array:
         """From off to the limit."""
         del value
         return self.switching_function(norm, control) / self.limit
 
     def switching_function(self, norm: Norm, costate: Array) -> Array:
-        """Length, size of each component, or each thruster's own."""
-        if isinstance(norm, Euclidean):
-            return np.asarray(np.linalg.norm(costate, axis=-1)[..., None])
-        return np.abs(costate) if isinstance(norm, LargestComponent) else np.asarray(costate)
+        """Length of a ball's controls, size of each other, or each one-sided control itself."""
+        found = []
+        for block, at in norm.parts:
+            part = costate[..., at]
+            if block.is_round:
+                found.append(np.linalg.norm(part, axis=-1)[..., None])
+            else:
+                found.append(part if block.is_one_sided else np.abs(part))
+        return _side_by_side(found, costate)
+
+    def turning(self, norm: Norm) -> tuple[slice, ...]:
+        """None: what turns is off or full as well."""
+        del norm
+        return ()
+
+
+def _side_by_side(parts: list[Array], like: Array) -> Array:
+    """Join (..., j) arrays of the blocks; without any, none of `like`'s columns."""
+    return np.concatenate([like[..., :0], *parts], axis=-1)

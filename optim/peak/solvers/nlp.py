@@ -13,8 +13,9 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import NDArray
 
+from ....models.norms import Norm
 from ....models.types import Array
-from ...norms import Euclidean, LargestComponent, Norm
+from ....verify.solver_status import SolverStatus, ipopt_status
 from ..transcription.propagate import right_hand_side
 from ..transcription.shooting import Rollout, Shooting
 from ..transcription.terminal import residual_derivative
@@ -23,8 +24,6 @@ from .scp import LocalAnswer, reference_control
 
 POINTS = 3
 """Gauss points in a cell."""
-STOPPED_WELL = ("Solve_Succeeded", "Solved_To_Acceptable_Level")
-"""IPOPT's words for having met its own tolerances (a hint, never evidence)."""
 
 
 @final
@@ -69,7 +68,7 @@ class NonlinearProgram:
         multiplier = transcription.terminal_multiplier(multiplier, landed)
         dual, multiplier = dual_value(shooting, landed, sensitivity, multiplier)
         gap = abs(peak - dual) / max(peak, 1e-300)
-        reason = "" if status in STOPPED_WELL else f"IPOPT stopped with {status}"
+        reason = "" if status.is_usable else f"IPOPT {status.value}"
         return LocalAnswer(shooting, landed, sensitivity, multiplier, peak, gap, iterations, reason)
 
 
@@ -173,8 +172,8 @@ class _Transcription:
 
     def solve(
         self, trajectory: Rollout, *, tolerance: float, max_iterations: int
-    ) -> tuple[Array, Array, str, int]:
-        """Run IPOPT from a flight; returns variables, row multipliers, IPOPT's word, iterations."""
+    ) -> tuple[Array, Array, SolverStatus, int]:
+        """Run IPOPT from a flight; returns variables, row multipliers, how it ended, iterations."""
         import casadi as ca
 
         options: dict[str, Any] = {
@@ -200,7 +199,7 @@ class _Transcription:
         answer = solver(x0=self._start(trajectory), lbx=low, ubx=high, lbg=self.lower, ubg=self.upper)
         stats = solver.stats()
         z, multiplier = answer["x"].full().ravel(), answer["lam_g"].full().ravel()
-        return z, multiplier, str(stats["return_status"]), int(stats["iter_count"])
+        return z, multiplier, ipopt_status(str(stats["return_status"])), int(stats["iter_count"])
 
     def _start(self, trajectory: Rollout) -> Array:
         """Variables of a flight: states at the nodes from the chord of each cell."""
@@ -246,10 +245,12 @@ def _effort_rows(norm: Norm, V: Any, p: Any) -> list[tuple[Any, Array, Array]]:
     """Rows for effort(v_k) <= p, p >= 0 being a bound."""
     import casadi as ca
 
-    m, n = V.shape
-    if isinstance(norm, Euclidean):
-        return [(p**2 - ca.sum1(V**2).T, np.zeros(n), np.full(n, np.inf))]
-    wide = ca.vec(V)
-    rows = [(p - wide, np.zeros(m * n), np.full(m * n, np.inf))]
-    other = p + wide if isinstance(norm, LargestComponent) else wide
-    return [*rows, (other, np.zeros(m * n), np.full(m * n, np.inf))]
+    rows: list[Any] = []
+    for block, at in norm.parts:
+        part = V if block.size == V.shape[0] else V[at, :]
+        if block.is_round:
+            rows.append(p**2 - ca.sum1(part**2).T)
+        else:
+            wide = ca.vec(part)
+            rows += [p - wide, wide if block.is_one_sided else p + wide]
+    return [(row, np.zeros(row.numel()), np.full(row.numel(), np.inf)) for row in rows]

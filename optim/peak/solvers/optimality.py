@@ -15,17 +15,7 @@ from __future__ import annotations
 import numpy as np
 
 from ....models.types import Array
-from ...norms import Euclidean, LargestComponent, Norm
 from ..transcription.shooting import Rollout, Sensitivity, Shooting
-
-
-def control_support(norm: Norm, direction: Array) -> Array:
-    """Largest direction . v over controls of unit effort, (..., m) -> (...)."""
-    if isinstance(norm, Euclidean):
-        return np.asarray(np.linalg.norm(direction, axis=-1))
-    if isinstance(norm, LargestComponent):
-        return np.asarray(np.abs(direction).sum(axis=-1))
-    return np.asarray(np.maximum(direction, 0.0).sum(axis=-1))
 
 
 def dual_value(
@@ -34,7 +24,7 @@ def dual_value(
     """Lower bound of the linearised problem from a multiplier, and that multiplier normalised."""
     norm = shooting.scaled.problem.norm
     costate = -np.einsum("i,ikm->km", multiplier, sensitivity.terminal)
-    total = float(control_support(norm, costate).sum())
+    total = float(norm.control_support(costate).sum())
     if total <= 0.0:
         return 0.0, np.zeros(6)
     y = multiplier / total

@@ -15,8 +15,8 @@ from typing import Any, final
 
 import numpy as np
 
+from ....models.norms import Norm
 from ....models.types import Array
-from ...norms import Norm
 from .curvature import Curvature
 from .effort_cones import effort_cones
 from .goal import Goal
@@ -44,8 +44,6 @@ class ConvexStep:
         What is made least, terminal slack, and the curvature term at the answer.
     multiplier : (6,)
         Of the terminal rows, so that `multiplier @ derivative` is minus the switching function.
-    trusted : bool
-        Clarabel's own word was "solved" (a hint for the loop, never evidence).
     """
 
     control: Array
@@ -53,7 +51,6 @@ class ConvexStep:
     slack: float
     bend: float
     multiplier: Array
-    trusted: bool
 
 
 @final
@@ -131,7 +128,6 @@ class ConeProgram:
             bend=bend,
             slack=float(np.maximum(z[self.first_slack : self.size], 0.0).sum()),
             multiplier=self._multiplier(dual, len(b) - extra),
-            trusted=str(answer.status) in ("Solved", "AlmostSolved"),
         )
 
     def _exact_rows(self, G: Array, residual: Array) -> tuple[Array, Array]:

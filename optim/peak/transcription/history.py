@@ -9,8 +9,8 @@ from typing import final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ....models.norms import Norm
 from ....models.types import Array
-from ...norms import Norm
 
 
 @final

@@ -12,7 +12,6 @@ from typing import final
 import numpy as np
 
 from ....models.types import Array
-from ...norms import ThrusterAxes
 from .mesh import Mesh
 from .propagate import Propagator
 from .scaling import ScaledProblem
@@ -103,8 +102,7 @@ class Shooting:
     @np.errstate(over="ignore", invalid="ignore")  # a wild trial may leave the numbers; it is refused
     def fly(self, control: Array) -> Rollout:
         """Trajectory of a control (one-sided thrust is clipped at zero)."""
-        if isinstance(self.scaled.problem.norm, ThrusterAxes):
-            control = np.maximum(control, 0.0)
+        control = self.scaled.problem.norm.clipped(control)
         torque = np.zeros((self.mesh.size, 3))
         torque[self.mesh.open] = control @ self.scaled.control_matrix.T
         states = self.propagator.states(torque)

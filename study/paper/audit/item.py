@@ -13,16 +13,13 @@ from ....models.closed_loop import ClosedLoop
 from ....models.laws import Expression
 from ....models.lowering import evaluate
 from ....models.rigid_body import RigidBody
-from ....verify.certificates.program import write_lines
-from ....verify.checker import Node, Poly, Ring, inverse_matrix, on_sphere, pick, run
-from ....verify.lyapunov.exact_states import EXACT, ExactState, loop_arguments, program_of
-from ....verify.lyapunov.forms import symbol_names
+from ....verify.lyapunov import normal_form
+from ....verify.lyapunov.exact_states import EXACT, ExactState, body_entries, loop_arguments, program_of
 from ....verify.verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict, Witness
 
 PAPER = "Ram & Akella, AAS 21-402"
 J1 = RigidBody.from_rows([["3.05", "0.14", "0.05"], ["0.14", "2.66", "0.12"], ["0.05", "0.12", "2.18"]])
 """The paper's first inertia, kg m^2."""
-_UPPER = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
 
 
 @final
@@ -102,23 +99,9 @@ def _claim(
     )
 
 
-def polynomials(
-    loop: ClosedLoop, expression: Expression, extra: Mapping[str, Expression] | None = None
-) -> list[Poly]:
-    """Elements of an expression as exact polynomials on |beta| = 1, every parameter and inertia a symbol."""
-    symbols = symbol_names(loop) | dict(extra or {})
-    lines = write_lines(symbols, [ca.SX(expression)])
-    names = ["c", *(name for name in symbols if name != "b0")]
-    ring = Ring(names, [n for n in names if n in (*loop.parameter_symbols, "R")])
-    known = {name: ring.symbol(name) for name in names if name != "c"}
-    known["b0"] = ring.constant(1) - ring.symbol("c")
-    values = run(Node(list(lines.instructions), "program"), ring, known)
-    return [on_sphere(pick(values, Node(name, "result"))) for name in lines.results[0]]
-
-
 def vanishes(loop: ClosedLoop, expression: Expression, extra: Mapping[str, Expression] | None = None) -> bool:
-    """Whether an expression is identically zero on |beta| = 1, decided exactly."""
-    return not any(p.terms for p in polynomials(loop, expression, extra))
+    """Whether an expression is identically zero on |beta| = 1, every parameter and inertia a symbol."""
+    return normal_form.vanishes(loop, expression, extra, positive=(*loop.parameter_symbols, "R"), sphere=True)
 
 
 def exact_values(
@@ -129,8 +112,7 @@ def exact_values(
     extra: Mapping[str, tuple[Expression, Fraction]] | None = None,
 ) -> list[Fraction]:
     """Elements of an expression at a rational state, exactly."""
-    J = [list(row) for row in body.exact_inertia]
-    entries = [M[i][j] for M in (J, inverse_matrix(J)) for i, j in _UPPER]
+    entries = body_entries(body.exact_inertia)
     pairs: Sequence[tuple[Expression, Fraction]] = list((extra or {}).values())
     program = program_of(loop, [symbol for symbol, _ in pairs], [ca.SX(expression)])
     arguments = [*loop_arguments(loop, state, entries), *([value] for _, value in pairs)]

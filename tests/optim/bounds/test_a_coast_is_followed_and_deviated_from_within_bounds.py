@@ -6,15 +6,15 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from intermit.models.norms import EUCLIDEAN, LARGEST_COMPONENT, thrusters
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import PiecewisePolynomial
 from intermit.optim.bounds.bound import best_departure, start_momentum
-from intermit.optim.bounds.sets.gauge import invariant_set, torque_vertices
+from intermit.optim.bounds.sets.gauge import invariant_set
 from intermit.optim.bounds.sets.momentum_sets import UnitBall
 from intermit.optim.bounds.windows.coast import coasts
 from intermit.optim.bounds.windows.deviation import Growth, deviation_above, growth_of_deviations
 from intermit.optim.bounds.windows.travel import WindowTravel
-from intermit.optim.norms import Euclidean, LargestComponent, ThrusterAxes
 from intermit.optim.problem import TransferProblem, quaternion_from_axis_angle
 from intermit.verify import checker
 from intermit.verify.checker import coast_attitude, peak_coast
@@ -27,7 +27,7 @@ WINDOW = PiecewisePolynomial(
     tuple(Fraction(k) for k in (0, 1, 3, 4, 7)),
     ((), (Fraction(1),), (), (Fraction(0), Fraction(4), Fraction(-4))),
 )
-THRUSTERS = ThrusterAxes.from_rows([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
+THRUSTERS = thrusters([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
 RATES = [("0.2", "-0.1", "0.15"), ("0.02", "0.03", "-0.01"), ("0", "0.3", "0.001")]
 
 
@@ -38,7 +38,7 @@ def problem(body, rate, norm=None, attitude=None):
         window=WINDOW,
         attitude=attitude,
         rate=tuple(Fraction(w) for w in rate),
-        norm=norm or Euclidean(),
+        norm=norm or EUCLIDEAN,
     )
 
 
@@ -213,13 +213,13 @@ def window(t):
 
 
 def corners(norm):
-    if isinstance(norm, Euclidean):
+    if norm.is_ball:
         return None
-    return np.array([[float(x) for x in v] for v in torque_vertices(norm)])
+    return np.array([[float(x) for x in v] for v in norm.corners()])
 
 
 def set_of(case):
-    return UnitBall(case.body) if isinstance(case.norm, Euclidean) else invariant_set(case.body, case.norm)
+    return UnitBall(case.body) if case.norm.is_ball else invariant_set(case.body, case.norm)
 
 
 def bounded(case, momenta, until, growth=None):
@@ -227,7 +227,7 @@ def bounded(case, momenta, until, growth=None):
     return float(deviation_above(WindowTravel(WINDOW), Fraction(until), growth))
 
 
-@pytest.mark.parametrize("norm", [Euclidean(), LargestComponent(), THRUSTERS], ids=lambda n: n.name)
+@pytest.mark.parametrize("norm", [EUCLIDEAN, LARGEST_COMPONENT, THRUSTERS], ids=lambda n: n.name)
 @pytest.mark.parametrize("body", [SPHERE, LONG, TILTED])
 def test_no_small_torque_deviates_further(body, norm):
     """The quadrature's error, about the square of a cell over the coast, is allowed for: 0.2 %."""
@@ -242,7 +242,7 @@ def test_no_small_torque_deviates_further(body, norm):
 @pytest.mark.parametrize("unit", [Fraction(10) ** 12, Fraction(10) ** 30, Fraction(1, 10**12)])
 def test_growth_does_not_depend_on_the_unit_of_inertia(unit):
     scaled = RigidBody.from_rows([[unit * x for x in row] for row in TILTED.exact_inertia])
-    one, other = problem(TILTED, RATES[0], LargestComponent()), problem(scaled, RATES[0], LargestComponent())
+    one, other = problem(TILTED, RATES[0], LARGEST_COMPONENT), problem(scaled, RATES[0], LARGEST_COMPONENT)
     a, b = (growth_of_deviations(set_of(c), start_momentum(c)) for c in (one, other))
     assert float(b.distance) == pytest.approx(float(a.distance), rel=1e-9)
     assert float(b.momentum) == pytest.approx(float(a.momentum), rel=1e-9)
@@ -252,7 +252,7 @@ def test_growth_does_not_depend_on_the_unit_of_inertia(unit):
 def test_a_coast_of_no_use_is_not_followed(arm):
     """Thrusters that hardly turn the body about two axes: deviations would grow beyond any number."""
     rows = [[0, 0, 1], [0, 0, -1], [arm, 0, 0], ["-" + arm, 0, 0], [0, arm, 0], [0, "-" + arm, 0]]
-    case = problem(LONG, RATES[0], ThrusterAxes.from_rows(rows))
+    case = problem(LONG, RATES[0], thrusters(rows))
     departure = best_departure(case, set_of(case), WindowTravel(WINDOW))
     assert departure.growth.allows(departure.coast.until)
     assert not departure.growth.allows(Fraction(1))

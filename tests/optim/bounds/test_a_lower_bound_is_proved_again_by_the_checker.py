@@ -5,11 +5,11 @@ import math
 from fractions import Fraction
 
 import pytest
+from intermit.models.norms import EUCLIDEAN, LARGEST_COMPONENT, thrusters
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import PiecewisePolynomial
 from intermit.optim.bounds import PathOptions, certified_lower_bound
 from intermit.optim.bounds.certificate import peak_certificate
-from intermit.optim.norms import Euclidean, LargestComponent, ThrusterAxes
 from intermit.optim.problem import Terminal, TransferProblem, quaternion_from_axis_angle
 from intermit.verify.certificates import certificate_text
 from intermit.verify.checker import check_text
@@ -18,7 +18,7 @@ J1 = RigidBody.from_rows([["3.05", "0.14", "0.05"], ["0.14", "2.66", "0.12"], ["
 WINDOW = PiecewisePolynomial(
     (Fraction(0), Fraction(4), Fraction(6), Fraction(10)), ((Fraction(1),), (), (Fraction(1),))
 )
-THRUSTERS = ThrusterAxes.from_rows([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
+THRUSTERS = thrusters([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
 AWAY = (Fraction("0.03"), Fraction("0.02"), Fraction("0.04"))
 QUICK = PathOptions(degree=3, tolerance=1e-2)
 """Weak potentials: the proofs are the same, and short."""
@@ -32,10 +32,10 @@ def problem(**options):
 CASES = {
     "path": problem(),
     "path in the invariant set": problem(norm=THRUSTERS),
-    "components": problem(norm=LargestComponent()),
+    "components": problem(norm=LARGEST_COMPONENT),
     "path after a coast": problem(rate=AWAY),
     "path in the invariant set after a coast": problem(norm=THRUSTERS, rate=AWAY),
-    "momentum": problem(norm=LargestComponent(), rate=(Fraction(-1), Fraction(2), Fraction(0))),
+    "momentum": problem(norm=LARGEST_COMPONENT, rate=(Fraction(-1), Fraction(2), Fraction(0))),
 }
 
 
@@ -185,7 +185,7 @@ def test_a_larger_set_of_torques_is_not_covered(texts, key):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("norm", [Euclidean(), LargestComponent(), THRUSTERS])
+@pytest.mark.parametrize("norm", [EUCLIDEAN, LARGEST_COMPONENT, THRUSTERS])
 def test_tumbling_start_with_tolerances(norm):
     moving = problem(
         norm=norm,
@@ -198,7 +198,7 @@ def test_tumbling_start_with_tolerances(norm):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("norm", [Euclidean(), LargestComponent()])
+@pytest.mark.parametrize("norm", [EUCLIDEAN, LARGEST_COMPONENT])
 def test_one_target_sign_the_long_way_round(norm):
     long = problem(norm=norm, signs=(-1,))
     bound = certified_lower_bound(long, options=QUICK)

@@ -4,9 +4,10 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from intermit.models.norms import LARGEST_COMPONENT, thrusters
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import PiecewisePolynomial
-from intermit.optim.bounds.sets.gauge import invariant_set, torque_vertices
+from intermit.optim.bounds.sets.gauge import invariant_set
 from intermit.optim.bounds.windows.components import (
     TransferSides,
     component_bounds,
@@ -15,12 +16,11 @@ from intermit.optim.bounds.windows.components import (
     peak_from_components,
 )
 from intermit.optim.bounds.windows.travel import WindowTravel
-from intermit.optim.norms import LargestComponent, ThrusterAxes
 
 J1 = RigidBody.from_rows([["3.05", "0.14", "0.05"], ["0.14", "2.66", "0.12"], ["0.05", "0.12", "2.18"]])
 LONG = RigidBody.from_rows([[1, 0, 0], [0, 2, 0], [0, 0, 3]])
 SPHERE = RigidBody.from_rows([[2, 0, 0], [0, 2, 0], [0, 0, 2]])
-SIX = ThrusterAxes.from_rows([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, "0.5"], [0, 0, "-0.5"]])
+SIX = thrusters([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, "0.5"], [0, 0, "-0.5"]])
 ONE = PiecewisePolynomial((Fraction(0), Fraction(10)), ((Fraction(1),),))
 
 
@@ -48,10 +48,10 @@ def gauge(momenta, H):
 
 
 @pytest.mark.parametrize("body", [J1, LONG, SPHERE])
-@pytest.mark.parametrize("norm", [LargestComponent(), SIX])
+@pytest.mark.parametrize("norm", [LARGEST_COMPONENT, SIX])
 def test_gauge_grows_no_faster_than_the_torque(body, norm):
     momenta = invariant_set(body, norm)
-    corners = np.array([[float(x) for x in t] for t in torque_vertices(norm)])
+    corners = np.array([[float(x) for x in t] for t in norm.corners()])
     assert gauge(momenta, corners).max() <= 1 + 1e-12
     random = np.random.default_rng(3)
     for _ in range(5):
@@ -68,7 +68,7 @@ def test_the_cube_is_not_invariant():
     assert (np.abs(H).max(axis=1) > 1.05 * 0.02 * np.arange(401)).any()
 
 
-@pytest.mark.parametrize("momenta", [invariant_set(J1, LargestComponent()), invariant_set(LONG, SIX)])
+@pytest.mark.parametrize("momenta", [invariant_set(J1, LARGEST_COMPONENT), invariant_set(LONG, SIX)])
 def test_support_is_above_every_point_of_the_set(momenta):
     random = np.random.default_rng(0)
     H = random.standard_normal((3000, 3))
@@ -82,14 +82,14 @@ def test_support_is_above_every_point_of_the_set(momenta):
 
 
 def test_equal_inertias_leave_the_cube():
-    cube = invariant_set(SPHERE, LargestComponent()).with_box((Fraction(1), Fraction(1), Fraction(1)))
+    cube = invariant_set(SPHERE, LARGEST_COMPONENT).with_box((Fraction(1), Fraction(1), Fraction(1)))
     v = np.random.default_rng(1).standard_normal((100, 3))
     assert np.allclose(cube.support_above(v), np.abs(v).sum(axis=1), rtol=1e-9)
     assert gyroscopic_bound(cube, (Fraction(1), Fraction(1), Fraction(1)), 0)[0] == 0
 
 
 def test_gyroscopic_bound_is_above_samples():
-    momenta = invariant_set(LONG, LargestComponent())
+    momenta = invariant_set(LONG, LARGEST_COMPONENT)
     B = (Fraction(3, 2), Fraction(3, 2), Fraction(3, 2))
     H = np.random.default_rng(2).standard_normal((200_000, 3))
     H *= (np.random.default_rng(4).uniform(0.5, 1, len(H)) / gauge(momenta, H))[:, None]
@@ -107,7 +107,7 @@ def test_components_stay_within_their_bounds():
     windows = WindowTravel(ONE)
     sides = TransferSides(ONE, windows.instant(windows.total / 2))
     trial = Fraction(1, 10)
-    momenta = invariant_set(LONG, LargestComponent())
+    momenta = invariant_set(LONG, LARGEST_COMPONENT)
     bounds = component_bounds(momenta, sides, trial)
     random = np.random.default_rng(7)
     time = 0.02 * np.arange(251)
@@ -121,7 +121,7 @@ def test_components_stay_within_their_bounds():
 def test_a_peak_from_components_never_exceeds_its_trial():
     windows = WindowTravel(ONE)
     sides = TransferSides(ONE, windows.instant(windows.total / 2))
-    momenta = invariant_set(LONG, LargestComponent())
+    momenta = invariant_set(LONG, LARGEST_COMPONENT)
     beta = (Fraction(1), Fraction(1), Fraction(1))
     for trial in (Fraction(1, 100), Fraction(1, 10), Fraction(1)):
         bounds = component_bounds(momenta, sides, trial)

@@ -5,10 +5,10 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from intermit.models.norms import EUCLIDEAN, LARGEST_COMPONENT
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import PiecewisePolynomial
 from intermit.optim.bounds import PathOptions, certified_lower_bound
-from intermit.optim.norms import Euclidean, LargestComponent
 from intermit.optim.peak.search.minimum_peak import minimum_peak
 from intermit.optim.peak.search.options import MultiStart
 from intermit.optim.problem import TransferProblem, quaternion_from_axis_angle
@@ -49,7 +49,7 @@ def problems(seed, windows):
     for number in range(windows):
         rate = 0.03 * random.standard_normal(3) if (number + seed) % 3 == 2 else np.zeros(3)
         x, y, z = (Fraction(round(float(w) * 10**4), 10**4) for w in rate)
-        norm = LargestComponent() if number % 2 else Euclidean()
+        norm = LARGEST_COMPONENT if number % 2 else EUCLIDEAN
         window = random_window(random)
         yield TransferProblem(body=body, window=window, attitude=attitude, rate=(x, y, z), norm=norm)
 

@@ -5,10 +5,10 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from intermit.models.norms import LARGEST_COMPONENT
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import Hermite, PiecewisePolynomial, Window, build_schedule
 from intermit.optim.bounds import certified_lower_bound
-from intermit.optim.norms import LargestComponent
 from intermit.optim.peak import MultiStart, minimum_peak
 from intermit.optim.problem import Terminal, TransferProblem, quaternion_from_axis_angle
 
@@ -97,7 +97,7 @@ def test_tolerance_lowers_the_bound():
 def test_largest_component_of_equal_inertias(degrees, optimum):
     window = PiecewisePolynomial((Fraction(0), Fraction(10)), ((Fraction(1),),))
     attitude = quaternion_from_axis_angle((0, 0, 1), math.radians(degrees))
-    problem = TransferProblem(body=SPHERE, window=window, attitude=attitude, norm=LargestComponent())
+    problem = TransferProblem(body=SPHERE, window=window, attitude=attitude, norm=LARGEST_COMPONENT)
     bound = certified_lower_bound(problem)
     assert 0.83 * optimum <= bound.value <= optimum
     assert bound.name == "components"

@@ -10,24 +10,24 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from intermit.models.norms import EUCLIDEAN, LARGEST_COMPONENT, thrusters
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import PiecewisePolynomial
 from intermit.optim.bounds import PathOptions, certified_lower_bound
 from intermit.optim.bounds.bound import path_of, start_momentum
-from intermit.optim.bounds.sets.gauge import invariant_set, longest_vertex, torque_vertices
+from intermit.optim.bounds.sets.gauge import invariant_set, longest_vertex
 from intermit.optim.bounds.sets.momentum_sets import UnitBall
 from intermit.optim.bounds.windows.coast import coasts
 from intermit.optim.bounds.windows.deviation import Growth, deviation_above, growth_of_deviations
 from intermit.optim.bounds.windows.travel import WindowTravel, least_peak
-from intermit.optim.norms import Euclidean, LargestComponent, ThrusterAxes
 from intermit.optim.problem import Terminal, TransferProblem
 from scipy.integrate import solve_ivp
 
 CHEAP = PathOptions(degree=3, tolerance=1e-2, components=False)
 ROUNDING = 1 + 1e-9
 """Of the integration and of the start, which is written down as floats."""
-THRUSTERS = ThrusterAxes.from_rows([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
-NORMS = (Euclidean(), LargestComponent(), THRUSTERS)
+THRUSTERS = thrusters([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
+NORMS = (EUCLIDEAN, LARGEST_COMPONENT, THRUSTERS)
 KINDS = ("one switch", "one way", "late", "greedy", "random")
 
 
@@ -94,8 +94,8 @@ def steered(random, kind, horizon, norm):
         fixed = kind == "late"
     ways /= np.linalg.norm(ways, axis=1)[:, None]
     corners = None
-    if not isinstance(norm, Euclidean):
-        corners = np.array([[float(x) for x in v] for v in torque_vertices(norm)])
+    if not norm.is_ball:
+        corners = np.array([[float(x) for x in v] for v in norm.corners()])
         fixed = True  # the best corner in space would jump as the body turns
         ways = corners[(ways @ corners.T).argmax(axis=1)]
 
@@ -113,7 +113,7 @@ def flown_backwards(random):
     horizon = float(window.knots[-1])
     direction, jumps = steered(random, kind, horizon, norm)
     J, inverse = body.inertia, np.linalg.inv(body.inertia)
-    longest = 1.0 if isinstance(norm, Euclidean) else float(longest_vertex(norm))
+    longest = 1.0 if norm.is_ball else float(longest_vertex(norm))
     reach = float(WindowTravel(window).total)
     size = 10 ** random.uniform(-2, 0.3)
     peak = size * np.trace(J) / 3 / reach / longest  # turns at about this rate, rad/s
@@ -157,7 +157,7 @@ def bound_after(problem, coast, growth=None):
     """The path bound after any coast, not only the one that promises most; in either set of momenta."""
     windows, H0 = WindowTravel(problem.window), start_momentum(problem)
     found = []
-    euclidean = isinstance(problem.norm, Euclidean)
+    euclidean = problem.norm.is_ball
     sets = [(UnitBall(problem.body), Fraction(1) if euclidean else longest_vertex(problem.norm))]
     if not euclidean:
         sets.append((invariant_set(problem.body, problem.norm), Fraction(1)))

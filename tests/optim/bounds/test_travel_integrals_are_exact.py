@@ -4,8 +4,9 @@ from fractions import Fraction
 
 import numpy as np
 from intermit.models.schedule import Hermite, PiecewisePolynomial, Window, build_schedule
-from intermit.optim.bounds.windows.travel import WindowTravel, least_peak, momentum_peak, rounded_down
+from intermit.optim.bounds.windows.travel import WindowTravel, least_peak, momentum_peak
 from intermit.optim.problem import WindowProfile, window_profile
+from intermit.verify.exact.rounding import rounded_down
 from scipy.integrate import quad
 
 PAPER = build_schedule(

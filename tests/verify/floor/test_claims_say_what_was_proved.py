@@ -6,6 +6,7 @@ from fractions import Fraction as F
 import numpy as np
 import pytest
 from intermit.models.laws import QuaternionPD
+from intermit.models.norms import EUCLIDEAN, LARGEST_COMPONENT
 from intermit.models.schedule import Hermite, Window, build_schedule
 from intermit.models.simulation import filter_minimum, settling_time, simulate, torque_metrics
 from intermit.verify.filter.answer import answer
@@ -36,8 +37,8 @@ def test_paper_scenario_is_proved_and_bounds_its_own_run(law):
     assert {c.verdict for c in claims.values()} == {Verdict.PROVED}
     run = simulate(law, J1, QUESTION.schedule, quaternion=TILTED, rate=REST, horizon=F(56))
     assert filter_minimum(run).value >= found.floor.value
-    assert torque_metrics(run).peak_euclidean.value <= found.torque.applied
-    assert torque_metrics(run).peak_commanded_euclidean.value <= found.torque.commanded
+    assert torque_metrics(run).peak[EUCLIDEAN].value <= found.torque.applied
+    assert torque_metrics(run).peak_commanded[EUCLIDEAN].value <= found.torque.commanded
     assert settling_time(run, attitude=0.01, rate=0.01) <= found.convergence.settling
 
 
@@ -52,9 +53,9 @@ def test_torque_limit_below_the_bound_is_undecided():
 
 def test_the_largest_torque_of_the_search_stands_beside_the_bound():
     found = answer(replace(QUESTION, torque_limit=F(5), run_peak=0.5, search=Search(samples=16, rounds=0)))
-    assert found.worst.peak_euclidean >= found.worst.peak_component > 0.5
+    assert found.worst.peak[EUCLIDEAN] >= found.worst.peak[LARGEST_COMPONENT] > 0.5
     assert (
-        f"of 16 runs over the set, {found.worst.peak_component:.4g} N m"
+        f"of 16 runs over the set, {found.worst.peak[LARGEST_COMPONENT]:.4g} N m"
         in by_key(found)["torque.limit"].reason
     )
 
