@@ -264,10 +264,11 @@ def _require_reach(file: ScenarioFile, schedule: Schedule, document: Document) -
             f"{float(horizon):g} s goes on for more than {float(MAX_IDLE):g} s after the table's end "
             f"({float(schedule.end):g} s), where nothing acts: give an earlier end",
         )
-    if step is not None and horizon / step > MAX_OUTPUTS:
+    shown = horizon - schedule.idle_lead
+    if step is not None and shown / step > MAX_OUTPUTS:
         raise ScenarioError(
             document.where("simulation.output_step"),
-            f"{float(step):g} s asks for {Decimal(int(horizon / step)):.3g} instants: at most {MAX_OUTPUTS}",
+            f"{float(step):g} s asks for {Decimal(int(shown / step)):.3g} instants: at most {MAX_OUTPUTS}",
         )
 
 

@@ -131,7 +131,7 @@ def _from_start(
         )
         return later, words
     lead, span = schedule.windows[0].on, schedule.windows[-1].off - schedule.windows[0].on
-    if schedule.period is None and lead > span:
+    if schedule.idle_lead:
         opens = number_text(clock.start + lead)
         return schedule, (
             f"{where}: the first window opens {float(lead):.6g} s after the run starts "

@@ -156,7 +156,7 @@ class SimulationTable(Table):
     """[simulation]: `horizon` and `output_step` of the histories, s; `saturate` at the torque limit."""
 
     horizon: Exact | None = None
-    output_step: Positive = Fraction(1, 100)
+    output_step: Positive | None = None
     saturate: StrictBool = False
 
 

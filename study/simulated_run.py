@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -26,6 +27,7 @@ from ..models.simulation.idle import idle_lead
 from ..models.types import Array
 from ..reports import parts
 from ..scenario import Scenario
+from .histories import output_times
 
 
 @final
@@ -94,9 +96,9 @@ def run_law(scenario: Scenario, law: Law) -> Run:
     saturation = None
     if scenario.simulation.saturate and scenario.limits is not None:
         saturation = Saturation(scenario.limits.torque, NORMS[scenario.limits.norm])
-    lead = idle_lead(law, scenario.schedule, scenario.initial.rate)
+    lead, controller = idle_lead(law, scenario.schedule, scenario.initial.rate)
     if lead >= scenario.horizon:
-        lead = Fraction(0)
+        lead, controller = Fraction(0), None
     try:
         trajectory = simulate(
             law,
@@ -105,6 +107,7 @@ def run_law(scenario: Scenario, law: Law) -> Run:
             quaternion=scenario.initial.quaternion,
             rate=scenario.initial.rate,
             horizon=scenario.horizon - lead,
+            controller=controller,
             saturation=saturation,
         )
     except SimulationError as error:
@@ -123,7 +126,10 @@ def metrics(run: Run) -> list[dict[str, Any]]:
     if settling is None:
         out.append(parts.quantity("settling_time", None, unit="s", note="not settled within the horizon"))
     else:
-        out.append(_figure("settling_time", settling + float(run.origin), "s", "settling time"))
+        at = float(run.origin) + settling
+        digits = 6 if at <= 0 or settling <= 0 else 6 + max(0, math.floor(math.log10(at / settling)))
+        label = "settling time"
+        out.append(parts.figure_of("settling_time", at, digits=min(digits, 15), unit="s", label=label))
     out += [
         *(
             _figure(f"peak_torque_{norm.key}", peak.value, norm.unit, f"peak |g u|, {norm.name}")
@@ -149,6 +155,11 @@ def _figure(name: str, value: float, unit: str, label: str) -> dict[str, Any]:
     return parts.figure_of(name, value, digits=6, unit=unit, label=label)
 
 
+def controller_decays(run: Run) -> bool:
+    """Whether the law has states of its own that changed before the run's origin."""
+    return run.trajectory is not None and bool(run.trajectory.loop.law.controller_states)
+
+
 def run_entry(
     scenario: Scenario, run: Run, key: str, label: str, further: Mapping[str, Array] | None = None
 ) -> tuple[dict[str, Any], dict[str, Array]]:
@@ -158,7 +169,7 @@ def run_entry(
     """
     assert run.trajectory is not None
     trajectory = run.trajectory
-    times, local = output_times(scenario), output_times(scenario, run.origin)
+    times, local = output_times(scenario, run.origin, absolute=True), output_times(scenario, run.origin)
     states, signals = trajectory.state(local), trajectory.signals(local)
     arrays = {
         f"{key}.time": times,
@@ -177,9 +188,10 @@ def run_entry(
         arrays |= {f"{key}.controller.{name}": states[7 + i] for i, name in enumerate(controller)}
     notes = [f"The run covers [0, {float(scenario.horizon):g}] s."]
     if run.origin:
+        known = " (what the law's own states do is known exactly)" if controller_decays(run) else ""
         notes.append(
-            f"From rest and without torque nothing happens before t = {float(run.origin):.10g} s: the run "
-            "was integrated from there on, in time counted from there."
+            f"From rest and without torque nothing happens before t = {float(run.origin):.10g} s{known}: "
+            "the run was integrated from there on, in time counted from there; its histories begin there."
         )
     if trajectory.is_saturated_model:
         notes.append("The torque was limited in this run: no claim covers a saturated run.")
@@ -193,16 +205,3 @@ def run_entry(
         "notes": notes,
     }
     return entry, arrays
-
-
-def output_times(scenario: Scenario, origin: Fraction = Fraction(0)) -> Array:
-    """Times of the histories: every output step from 0 to the horizon, which is always the last, s.
-
-    Counted from `origin`, exactly; what lies before it counts as 0 then.
-    """
-    step, horizon = scenario.simulation.output_step, scenario.horizon
-    count = int(horizon / step)
-    times = [float(max(step * i - origin, Fraction(0))) for i in range(count + 1)]
-    if step * count < horizon:
-        times.append(float(horizon - origin))
-    return np.array(times)

@@ -78,6 +78,15 @@ class Schedule:
         """End of the table, or the period, s."""
         return self.profile.knots[-1]
 
+    @property
+    def idle_lead(self) -> Fraction:
+        """Time before anything acts, s, where it is longer than the rest of a finite table; else 0."""
+        if self.period is not None:
+            return Fraction(0)
+        pieces = zip(self.profile.shapes, self.profile.knots, strict=False)
+        first = min([self.windows[0].on, *[knot for shape, knot in pieces if any(shape)][:1]])
+        return first if first > self.end - first else Fraction(0)
+
     def pieces_between(self, start: Fraction, stop: Fraction) -> Iterator[Piece]:
         """Pieces of g that meet (start, stop), whole, in absolute time; after a table, zero."""
         if self.period is None:

@@ -1,7 +1,7 @@
 """Simulation of one run, never across a schedule knot, and the figures read off it."""
 
 from .figures import Figures, read_figures
-from .integrate import DOP853, SimulationError, simulate
+from .integrate import DOP853, simulate
 from .metrics import (
     Extremum,
     Invariants,
@@ -16,6 +16,7 @@ from .metrics import (
     torque_metrics,
 )
 from .phases import Phase, phase_field, phases_between, signal_degree
+from .right_hand_side import SimulationError
 from .trajectory import Segment, Signals, Trajectory
 
 __all__ = [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
@@ -16,26 +17,18 @@ from ..lowering import UnknownOperationError
 from ..rigid_body import RigidBody
 from ..schedule import Schedule
 from ..types import Array
-from .phases import Phase, phase_field, phases_between, signal_degree
+from .coasting import PLANT, coast, coasting_decay, free_loop, turn_freely
+from .phases import Phase, phases_between, signal_degree
+from .right_hand_side import Passage, RightHandSide, SimulationError
 from .switching import SlidingError, Switching, jumping_functions
 from .trajectory import Segment, Trajectory
 
 KNOWN = 1000
-"""A filter state is known while it is above this many absolute tolerances: to some 0.1 per cent."""
-MAX_EVALUATIONS = 2_000_000
-"""Right-hand sides of one run, some 10 microseconds each."""
-PACE = 50_000
-"""Right-hand sides after which a run's pace is looked at."""
-TINY = 1e-300
-"""Keeps a quotient by no progress finite."""
-HOPELESS = 50
-"""A run that at its pace would take this many times MAX_EVALUATIONS stops at once."""
-LAST_STEPS, GROWTH = 50, 10.0
-"""A state that grew so much within the last steps before their size vanished escapes; else they are stiff."""
-
-
-class SimulationError(RuntimeError):
-    """A run that could not be carried to its horizon: it says when it stopped and why."""
+"""A filter state that was integrated is known while it is above this many absolute tolerances."""
+LEAST_FILTER_STATE = 1e-25
+"""A filter state that a gain divides by may fall to this, s: below it the loop is too stiff to integrate."""
+FINEST = 1e-13
+"""Relative tolerance of one period that stands for many."""
 
 
 @final
@@ -66,6 +59,7 @@ def simulate(
     rate: ArrayLike,
     horizon: Fraction,
     start: Fraction = Fraction(0),
+    controller: ArrayLike | None = None,
     saturation: Saturation | None = None,
     method: DOP853 | None = None,
 ) -> Trajectory:
@@ -81,6 +75,8 @@ def simulate(
         (3,), rad/s, body frame.
     horizon, start : Fraction
         End and start of the run, s.
+    controller : ArrayLike, optional
+        (m,) controller states at the start; by default the law's own initial values.
     saturation : Saturation, optional
         Limit on the applied torque; no claim of the package covers a saturated run (the adaptive gain can
         even escape in finite time there: its rate grows like k^2 once the torque no longer holds Omega down).
@@ -104,143 +100,152 @@ def simulate(
     phases = phases_between(schedule, law, start, horizon)
     degree = signal_degree(phases)
     state = loop.initial_state(q, np.asarray(rate, dtype=float))
+    if controller is not None:
+        state[PLANT:] = np.asarray(controller, dtype=float)
     method = method if method is not None else DOP853()
-    field = _RightHandSide(loop, body, degree)
+    run = _Run(
+        body,
+        RightHandSide(loop, body, degree),
+        RightHandSide(free_loop(), body, 0),
+        coasting_decay(loop),
+        _switching(loop, body, degree),
+        method,
+        float(horizon),
+    )
     reset = _reset_map(loop)
-    try:
-        functions = jumping_functions(loop, degree)
-    except UnknownOperationError as unknown:
-        raise SimulationError(f"the law jumps, and its switches cannot be located: {unknown}") from None
-    switching = None
-    if functions is not None:
-        switching = Switching(functions, degree, loop.parameter_values(), body_values(body))
     segments: list[Segment] = []
     for phase in phases:
         if phase.resets:
             state = reset(state, loop.parameter_values(), body_values(body))
-        if switching is None:
-            segments.append(_integrate_phase(field, phase, state, method, float(horizon)))
-        else:
-            segments += _integrate_switching(switching, phase, state, method)
+        segments += run.through(phase, state)
         state = segments[-1].end_state
-        _require_known_gain(loop, segments[-1], method)
-    count = field.count if switching is None else switching.evaluations
-    return Trajectory(loop, body, schedule, tuple(segments), count)
+        _require_gain(loop, segments[-1], run.decay, method)
+    return Trajectory(loop, body, schedule, tuple(segments), run.evaluations)
 
 
-def _integrate_switching(switching: Switching, phase: Phase, state: Array, method: DOP853) -> list[Segment]:
+def _switching(loop: ClosedLoop, body: RigidBody, degree: int) -> Switching | None:
+    """What carries a law that jumps from switch to switch; None for one that does not."""
     try:
-        return switching.through(phase, state, method.rtol, method.atol)
-    except (SlidingError, FloatingPointError) as stopped:
-        raise SimulationError(str(stopped)) from None
+        functions = jumping_functions(loop, degree)
+    except UnknownOperationError as unknown:
+        raise SimulationError(f"the law jumps, and its switches cannot be located: {unknown}") from None
+    if functions is None:
+        return None
+    return Switching(functions, degree, loop.parameter_values(), body_values(body))
 
 
-class _RightHandSide:
-    """Right-hand side on CasADi's own buffers: no conversion of arrays at each call."""
+@final
+@dataclass(frozen=True, eq=False)
+class _Run:
+    """What carries one run from phase to phase.
 
-    def __init__(self, loop: ClosedLoop, body: RigidBody, degree: int) -> None:
-        function = phase_field(loop, degree)
-        self.count = 0
-        self._seen: float | None = None
-        self.state_names = loop.state_names
-        self._tau = np.zeros(1)
-        self._state = np.zeros(loop.state.shape[0])
-        self._coefficients = np.zeros((degree + 1, loop.time.shape[0] // 2))
-        self._rate = np.zeros(loop.state.shape[0])
-        self._parameters, self._body = loop.parameter_values(), body_values(body)
-        self._degree = degree
-        # the buffer must outlive this object's calls: CasADi keeps no reference of its own
-        self._buffer, self._evaluate = function.buffer()
-        inputs = (self._tau, self._state, self._coefficients, self._parameters, self._body)
-        for i, value in enumerate(inputs):
-            self._buffer.set_arg(i, value.data)
-        self._buffer.set_res(0, self._rate.data)
+    Attributes
+    ----------
+    body : that turns
+    field, free : right-hand sides of the closed loop, and of the body without torque
+    decay : of `coasting_decay`
+    switching : for a law that jumps
+    """
 
-    def in_phase(self, phase: Phase, horizon: float) -> Callable[[float, Array], Array]:
-        """Right-hand side (t, x) -> x' with the phase's signals; it stops a run that goes on without end."""
-        # CasADi matrices are column-major, numpy's row-major: the transpose has the right layout
-        self._coefficients[...] = phase.coefficient_array(self._degree).T
-        origin = float(phase.origin)
+    body: RigidBody
+    field: RightHandSide
+    free: RightHandSide
+    decay: Array | None
+    switching: Switching | None
+    method: DOP853
+    horizon: float
 
-        def evaluate(t: float, x: Array) -> Array:
-            self.count += 1
-            if self.count % PACE == 0 or self.count > MAX_EVALUATIONS:
-                self._require_pace(t, horizon)
-            self._tau[0] = t - origin
-            self._state[:] = x
-            self._evaluate()
-            return self._rate.copy()
+    def through(self, phase: Phase, state: Array) -> list[Segment]:
+        """Segments of one phase.
 
-        return evaluate
+        Raises
+        ------
+        SimulationError
+            Where it cannot be carried to the phase's end.
+        """
+        method = self.method
+        if phase.is_torque_free and self.decay is not None:
+            return [coast(phase, state, self.decay, self._turn(phase))]
+        atol = self._tolerances(state)
+        if self.switching is not None:
+            try:
+                return self.switching.through(phase, state, method.rtol, atol)
+            except (SlidingError, FloatingPointError) as stopped:
+                raise SimulationError(str(stopped)) from None
+        found = self.field.through(phase, state, method.rtol, atol, self.horizon)
+        return [_segment(phase, found)]
 
-    def _require_pace(self, t: float, horizon: float) -> None:
-        """Stop a run that has used its right-hand sides, or will by far at the pace of its last ones."""
-        before, self._seen = self._seen, t
-        to_come = 0.0 if before is None else PACE * (horizon - t) / max(t - before, TINY)
-        if self.count <= MAX_EVALUATIONS and to_come <= HOPELESS * MAX_EVALUATIONS:
-            return
-        pace = f", and would take {to_come:.1g} more" if to_come > self.count else ""
-        raise SimulationError(
-            f"the run stopped at t = {t:.6g} s after {min(self.count, MAX_EVALUATIONS)} right-hand sides"
-            f"{pace}: its quickest motion is far quicker than its horizon is long; give a shorter horizon, "
-            "or slower parameters"
+    def _turn(self, phase: Phase) -> Callable[[Array], Passage]:
+        """What carries the body's own state through a coast; one period of many, to the last digits."""
+
+        def through(part: Phase, body: Array) -> Passage:
+            exact = part.end < phase.end
+            rtol, atol = (FINEST, FINEST / 100) if exact else (self.method.rtol, self.method.atol)
+            return self.free.through(part, body, rtol, atol, self.horizon)
+
+        return lambda body: turn_freely(phase, body, self.body.inertia, through)
+
+    def _tolerances(self, state: Array) -> Array | float:
+        """Absolute tolerances: those of states that decay in coasts are no more than relative ones."""
+        if self.decay is None or not self.decay.size:
+            return self.method.atol
+        sizes = np.abs(state[-self.decay.size :])
+        known = np.where(
+            (self.decay > 0) & (sizes > 0),
+            self.method.rtol * np.maximum(sizes, LEAST_FILTER_STATE),
+            self.method.atol,
         )
+        least = np.minimum(known, self.method.atol)
+        return np.concatenate([np.full(state.size - least.size, self.method.atol), least])
+
+    @property
+    def evaluations(self) -> int:
+        """Right-hand sides so far."""
+        acting = self.field.count if self.switching is None else self.switching.evaluations
+        return acting + self.free.count
 
 
-def _integrate_phase(
-    field: _RightHandSide, phase: Phase, state: Array, method: DOP853, horizon: float
-) -> Segment:
-    from scipy.integrate import solve_ivp
-
-    start, end = float(phase.start), float(phase.end)
-    solution = solve_ivp(
-        field.in_phase(phase, horizon), (start, end), state,
-        method="DOP853", rtol=method.rtol, atol=method.atol, dense_output=True,
-    )  # fmt: skip
-    if not solution.success or not np.all(np.isfinite(solution.y[:, -1])):
-        raise SimulationError(_why_stopped(field.state_names, solution.t[-1], solution.y))
-    return Segment(phase, solution.t, solution.y, solution.sol)
+def _segment(phase: Phase, found: Passage) -> Segment:
+    """A passage in time counted from its phase's start, as part of the run."""
+    start, times = float(phase.start), float(phase.start) + found.times
+    times[-1] = float(phase.end)
+    return Segment(phase, times, found.states, lambda t: found.dense(np.asarray(t) - start))
 
 
-def _require_known_gain(loop: ClosedLoop, segment: Segment, method: DOP853) -> None:
-    """Refuse a run whose gain divides by a filter state that has decayed into the integration's error.
+def divides_by_filter(loop: ClosedLoop) -> bool:
+    """Whether a law's gain depends on its filter state R."""
+    import casadi as ca
 
-    Through a long idle stretch R falls as exp(-lambda t), and what is left of it is noise, its sign included.
+    R, gain = loop.controller_states.get("R"), loop.control.gain
+    return R is not None and gain is not None and bool(ca.depends_on(ca.SX(gain), R))
+
+
+def _require_gain(loop: ClosedLoop, segment: Segment, decay: Array | None, method: DOP853) -> None:
+    """Refuse a run whose gain divides by a filter state of which nothing is left.
 
     Raises
     ------
     SimulationError
-        Saying when, and what R would have to be.
+        Saying when; and, where R is known exactly, that this is what the law does.
     """
-    import casadi as ca
-
-    R, gain = loop.controller_states.get("R"), loop.control.gain
-    if R is None or gain is None or not ca.depends_on(ca.SX(gain), R):
+    if not divides_by_filter(loop):
         return
-    values, least = segment.states[loop.state_names.index("R")], KNOWN * method.atol
-    if values.min() < least:
-        at = float(segment.times[int(np.argmax(values < least))])
+    values = segment.states[loop.state_names.index("R")]
+    if decay is None and values.min() < KNOWN * method.atol:
+        at = float(segment.times[int(np.argmax(values < KNOWN * method.atol))])
         raise SimulationError(
-            f"the run stopped at t = {at:.6g} s: R has decayed below {least:g} s, where its value is the "
-            "integration's error, and the gain divides by it; shorten the idle time before, or lower lambda"
+            f"the run stopped at t = {at:.6g} s: R has decayed below {KNOWN * method.atol:g} s, where its "
+            "value is the integration's error, and the gain divides by it; shorten the idle time before"
         )
-
-
-def _why_stopped(names: tuple[str, ...], time: float, states: Array) -> str:
-    """Say why, from the steps (n, m) up to there."""
-    state = states[:, -1]
-    if not np.all(np.isfinite(state)):
-        return f"the run stopped at t = {time:.6g} s: a state is no longer a number"
-    largest = int(np.argmax(np.abs(state)))
-    before = abs(states[largest, max(0, states.shape[1] - LAST_STEPS)])
-    if abs(state[largest]) > GROWTH * before:
-        return (
-            f"the run stopped at t = {time:.6g} s: the step size vanished while {names[largest]} grew to "
-            f"{state[largest]:.3g} (a state that escapes in finite time does this)"
-        )
-    return (
-        f"the run stopped at t = {time:.6g} s: the steps it needs are below the spacing of numbers there, "
-        "and no state grows: its quickest motion is too quick (stiff); lower the law's gains and rates"
+    if decay is None or values[-1] >= LEAST_FILTER_STATE:
+        return
+    rate = float(decay[list(loop.controller_states).index("R")])
+    at = segment.times[0] + math.log(values[0] / LEAST_FILTER_STATE) / rate
+    raise SimulationError(
+        f"the run stopped at t = {at:.6g} s: while no window is open R falls as exp(-{rate:g} t), and is "
+        f"below {LEAST_FILTER_STATE:g} s there: the filter has forgotten its start, and the next window "
+        "begins with a gain of one over R. That is the law's own property: start the run later "
+        "(initial.time), shorten the idle time, or lower lambda"
     )
 
 

@@ -71,7 +71,7 @@ class Switching:
     switches: int = 0
     evaluations: int = 0
 
-    def through(self, phase: Phase, state: Array, rtol: float, atol: float) -> list[Segment]:
+    def through(self, phase: Phase, state: Array, rtol: float, atol: Array | float) -> list[Segment]:
         """Segments of one phase, one between each two switches.
 
         Raises
@@ -135,7 +135,7 @@ class _Part:
 
 def _until_switch(
     motion: Callable[[float, Array, Array], list[Array]], values: Callable[[float, Array], Array],
-    held: Array, span: tuple[float, float], state: Array, tolerances: tuple[float, float],
+    held: Array, span: tuple[float, float], state: Array, tolerances: tuple[float, Array | float],
 ) -> _Part:  # fmt: skip
     """Integrate with the jumping values held, to the end or to just after the first switch."""
     from scipy.integrate import DOP853, OdeSolution

@@ -17,7 +17,8 @@ from ...scenario import LawChoice, Scenario
 from ...scenario.laws import law_class
 from ...verify.sampling import SampledDerivative
 from ..claims.entries import claim_entries, quantity_entry, witness_entry
-from ..simulated_run import output_times, run_entry
+from ..histories import output_times
+from ..simulated_run import run_entry
 from .case import Case
 from .result import CheckStudy
 from .storage_history import storage_history

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from intermit.cli.app import run
-from intermit.models.simulation import integrate
+from intermit.models.simulation import right_hand_side
 from intermit.scenario import load_scenario
 from intermit.study.simulated_run import run_law
 
@@ -68,11 +68,11 @@ def test_a_tolerance_that_no_attitude_exceeds_is_refused(
 
 
 def test_a_run_far_quicker_than_its_horizon_ends(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(integrate, "MAX_EVALUATIONS", 20_000)
+    monkeypatch.setattr(right_hand_side, "MAX_EVALUATIONS", 20_000)
     path = Path(written(tmp_path))
     scenario = load_scenario(path)
     assert run_law(scenario, scenario.laws[0].build()).failure == ""
-    monkeypatch.setattr(integrate, "MAX_EVALUATIONS", 200)
+    monkeypatch.setattr(right_hand_side, "MAX_EVALUATIONS", 200)
     assert "after 200 right-hand sides" in run_law(scenario, scenario.laws[0].build()).failure
 
 
