@@ -32,19 +32,19 @@ def test_decay_is_read_off_the_law():
 
 
 @pytest.mark.parametrize("lead", [0, 30, 100])
-def test_the_filter_decays_by_its_formula_and_the_body_rests(lead):
+def test_the_filter_decays_by_its_formula(lead):
     found = run(PERSISTENCE, lead + 1)
     assert found.controller_state("R", lead + 1) == pytest.approx(exp(-LAMBDA * (lead + 1)), rel=1e-12)
     assert np.array_equal(found.state(0.5 * lead)[:7], [*HALF_TURN, 0, 0, 0])
 
 
 @pytest.mark.parametrize("lead", [40, 80, 109])
-def test_what_follows_a_tiny_filter_state_does_not_depend_on_tolerances(lead):
+def test_what_follows_a_tiny_filter_state_is_known(lead):
     fine, coarse = (run(PERSISTENCE, lead, method=DOP853(rtol=r)) for r in (1e-13, 1e-9))
     assert coarse.state(lead + 4) == pytest.approx(fine.state(lead + 4), abs=1e-7)
 
 
-def test_a_filter_that_is_forgotten_ends_the_run_with_the_truth():
+def test_a_forgotten_filter_ends_the_run_with_the_truth():
     with pytest.raises(SimulationError, match="the law's own property") as caught:
         run(PERSISTENCE, 1000)
     # exp(-lambda t) = 1e-25 at t = 109.647 s
