@@ -9,6 +9,7 @@ from typing import final
 
 import numpy as np
 
+from ..models.attitude import conjugate, quaternion_product
 from ..models.rigid_body import RigidBody
 from ..models.types import Array
 from .document import Document
@@ -175,10 +176,7 @@ def _state(table: InitialTable, target: tuple[float, ...], document: Document) -
 
 def _relative(target: tuple[float, ...], q: tuple[float, ...]) -> tuple[float, ...]:
     """conj(target) q: the attitude as seen from the target."""
-    t0, tv = target[0], -np.array(target[1:])
-    b0, bv = q[0], np.array(q[1:])
-    vector = t0 * bv + b0 * tv + np.cross(tv, bv)
-    product = np.array([t0 * b0 - tv @ bv, *vector])
+    product = np.array(quaternion_product(conjugate(target), q))
     return tuple(float(x) for x in product / np.linalg.norm(product))
 
 

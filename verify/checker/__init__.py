@@ -36,7 +36,7 @@ from . import (
     schedule_facts,
 )
 from .bernstein import Form
-from .closed_loop import ATTITUDE, INERTIA, RATE, Loop, Motion, law_polynomials, move, read_loop
+from .closed_loop import ATTITUDE, INERTIA, RATE, Loop, Motion, law_polynomials, move, read_loop, same_law
 from .command import main, report
 from .comparison import (
     Bounds,
@@ -160,6 +160,7 @@ __all__ = [
     "root_above",
     "rounding_units",
     "run",
+    "same_law",
     "schedule_excitation",
     "schedule_facts",
     "show",

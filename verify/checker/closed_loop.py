@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from .exact_numbers import Matrix, require
+from .exact_numbers import Invalid, Matrix, require
 from .polynomials import TARGET, Exponents, Poly, Ring, Triple, apply, cross, on_sphere, pick, run, total
 from .reading import Node
 
@@ -105,6 +105,15 @@ def law_polynomials(law: Node) -> dict[str, dict[Exponents, Fraction]]:
     """Return torque and controller rates of a law as polynomials, and its lists of names, for comparison."""
     result = {str(i): p.terms for i, p in enumerate(law_values(law))}
     return result | {f"{key} {name}": {} for key, names in _law_names(law).items() for name in names}
+
+
+def same_law(left: object, right: object) -> bool:
+    """Whether two laws, as certificates hold them, have the same torque and rates as polynomials."""
+    try:
+        first, second = (law_polynomials(Node(law, "law")) for law in (left, right))
+    except (Invalid, LookupError):
+        return False
+    return first == second
 
 
 def _law_names(law: Node) -> dict[str, tuple[str, ...]]:

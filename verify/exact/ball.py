@@ -6,7 +6,7 @@ that later algebra with them needs no rounding.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
 from math import inf, isqrt, nextafter
 from typing import Any
@@ -71,6 +71,14 @@ def sqrt_above(value: Fraction) -> float:
 def sqrt_below(value: Fraction) -> float:
     """Return a float 0 <= r <= sqrt(value)."""
     return max(0.0, enclose(lambda x: x.sqrt(), value)[0]) if value > 0 else 0.0
+
+
+def horner(coefficients: Sequence[Any], x: Any) -> Any:
+    """Value at x of a polynomial, lowest power first, all of them balls or series of balls."""
+    value = x * 0
+    for c in reversed(coefficients):
+        value = value * x + c
+    return value
 
 
 def square_root(value: Fraction) -> tuple[Fraction, Fraction]:

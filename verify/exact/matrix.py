@@ -101,23 +101,23 @@ def shifted(A: Rows, factor: Fraction, shift: Fraction) -> Matrix:
     )
 
 
-def is_positive_definite(A: Rows) -> bool:
-    """Decide x'Ax > 0 for all x != 0, exactly, for a symmetric matrix."""
+def is_positive_definite(A: Rows | fmpq_mat) -> bool:
+    """Decide x'Ax > 0 for all x != 0, exactly, for a symmetric matrix (rows, or flint's)."""
     return all(c > 0 for c in _signed_characteristic(A))
 
 
-def is_positive_semidefinite(A: Rows) -> bool:
-    """Decide x'Ax >= 0 for all x, exactly, for a symmetric matrix."""
+def is_positive_semidefinite(A: Rows | fmpq_mat) -> bool:
+    """Decide x'Ax >= 0 for all x, exactly, for a symmetric matrix (rows, or flint's)."""
     return all(c >= 0 for c in _signed_characteristic(A))
 
 
-def _signed_characteristic(A: Rows) -> list[Any]:
+def _signed_characteristic(A: Rows | fmpq_mat) -> list[Any]:
     """Coefficients of det(t I + A), lowest first: sums of principal minors.
 
     The roots are minus the eigenvalues, all real: none is positive (negative) if and only if no
     coefficient is negative (every one is positive).
     """
-    coefficients = of(A).charpoly().coeffs()
+    coefficients = (A if isinstance(A, fmpq_mat) else of(A)).charpoly().coeffs()
     n = len(coefficients) - 1
     return [c if (n - k) % 2 == 0 else -c for k, c in enumerate(coefficients)]
 

@@ -15,7 +15,7 @@ from typing import Any, final
 from ...models.schedule import Schedule
 from ...models.schedule import polynomial as poly
 from ...models.schedule.piecewise import Piece
-from ..exact.ball import ball, float_above, float_below
+from ..exact.ball import ball, float_above, float_below, horner
 from ..exact.bisection import Box, minimum_below
 
 RELATIVE_WIDTH = 1e-9
@@ -48,16 +48,11 @@ class _Solution:
     decay: Fraction
     initial: Any
 
-    def _polynomial(self, tau: Any, coefficients: poly.Coefficients) -> Any:
-        value = ball(0)
-        for c in reversed(coefficients):
-            value = value * tau + ball(c)
-        return value
-
     def value(self, tau: Any) -> Any:
         """R at start + tau; tau and the result are balls."""
-        free = self.initial - self._polynomial(ball(0), self.particular)
-        return self._polynomial(tau, self.particular) + free * (-ball(self.decay) * tau).exp()
+        particular = [ball(c) for c in self.particular]
+        free = self.initial - horner(particular, ball(0))
+        return horner(particular, tau) + free * (-ball(self.decay) * tau).exp()
 
     def rate(self, low: Any, high: Any) -> Any:
         """Ball around R' on [low, high], from R' = -lambda R + 2 g^2 and a ball around R there.
@@ -65,7 +60,7 @@ class _Solution:
         R is at least R(low) exp(-lambda (high - low)) and at most R(low) plus the integral of 2 g^2,
         however small R is beside g^2. (The closed form itself cancels badly on intervals.)
         """
-        g = self._polynomial(low.union(high) / ball(self.piece.length), self.piece.shape)
+        g = horner([ball(c) for c in self.piece.shape], low.union(high) / ball(self.piece.length))
         width = high - low
         intake = 2 * (g * g).union(ball(0))
         first = self.value(low)

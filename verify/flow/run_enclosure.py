@@ -10,7 +10,7 @@ enclosure, and the run says so.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, final
@@ -24,7 +24,7 @@ from ...models.rigid_body import RigidBody
 from ...models.schedule import Schedule
 from ...models.schedule.polynomial import derivative
 from ...models.simulation import Phase, phases_between
-from ..exact.ball import ball
+from ..exact.ball import ball, horner
 
 Balls = list[Any]
 ORDER = 14
@@ -142,7 +142,7 @@ class EnclosedRun:
         """
         for _ in range(40):
             h, during = ball(step), _interval(step)
-            reached = [_polynomial(own, during) for own in coefficients]
+            reached = [horner(own, during) for own in coefficients]
             box = [x + arb(0, SLACK * (1e-6 + float(x.rad()))) for x in reached]
             try:
                 rests = [own[ORDER] for own in self._coefficients(phase, box, tau + during, ORDER)]
@@ -156,7 +156,7 @@ class EnclosedRun:
             )
             if small and all(b.contains_interior(x) for x, b in zip(held, box, strict=True)):
                 pairs = zip(coefficients, rests, strict=True)
-                self._state = [_polynomial(own, h) + rest * h**ORDER for own, rest in pairs]
+                self._state = [horner(own, h) + rest * h**ORDER for own, rest in pairs]
                 return step
             step /= 2
         raise NoEnclosureError(f"no step is short enough at t = {float(tau + phase.origin):g} s")
@@ -202,24 +202,10 @@ def _time_series(phase: Phase, tau: Any, order: int) -> list[Any]:
     """g, g', then each signal and its rate, as series about a local time tau."""
     variable = arb_series([tau, 1], prec=order)
     return [
-        _horner(row, variable)
+        horner([_constant(c) for c in row], variable)
         for coefficients in phase.coefficients
         for row in (coefficients, derivative(coefficients))
     ]
-
-
-def _horner(coefficients: Sequence[Fraction], variable: Any) -> Any:
-    value = _constant(0)
-    for c in reversed(coefficients):
-        value = value * variable + _constant(c)
-    return value
-
-
-def _polynomial(coefficients: Balls, h: Any) -> Any:
-    value = arb(0)
-    for c in reversed(coefficients):
-        value = value * h + c
-    return value
 
 
 def _interval(step: Fraction) -> Any:
