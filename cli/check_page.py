@@ -7,6 +7,7 @@ from string import ascii_uppercase
 from typing import TYPE_CHECKING
 
 from ..reports.numbers import write
+from ..reports.record.claims import QuantityEntry
 from ..study.simulated_run import metrics
 from ..verify.verdict import Claim, Verdict
 from .claim_tables import STYLES, Column, number_table, plain_table, verdict_table, witness_text
@@ -132,12 +133,12 @@ def _simulated(console: Console, mark: str, study: CheckStudy) -> None:
         console.print(f"  {', '.join(labels)}: {remark}" if len(labels) < len(runs) else f"  {remark}")
 
 
-def _run_table(runs: Sequence[tuple[str, list[dict[str, object]]]]) -> Table:
+def _run_table(runs: Sequence[tuple[str, Sequence[QuantityEntry]]]) -> Table:
     """One row a figure, one column a law."""
     table = plain_table("Figure", *(label for label, _ in runs))
-    names = list(dict.fromkeys(str(entry["name"]) for _, entries in runs for entry in entries))
+    names = list(dict.fromkeys(entry.name for _, entries in runs for entry in entries))
     for name in names:
-        found = [next((e for e in entries if e["name"] == name), None) for _, entries in runs]
+        found = [next((e for e in entries if e.name == name), None) for _, entries in runs]
         table.add_row(name.replace("_", " "), *("-" if e is None else write(e).ascii for e in found))
     return table
 

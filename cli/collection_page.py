@@ -2,41 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..reports.content.cells import cell_text
+from ..reports.content.verdicts import collections
 from .claim_tables import plain_table
 
 if TYPE_CHECKING:
     from rich.console import Console
+    from rich.table import Table
 
     from ..reports.record import Record
-
-SECTIONS = ("comparison", "tuning", "front", "schedule_study", "paper_claims", "audit")
+    from ..reports.record.tables import TableEntry
 
 
 def print_collections(console: Console, record: Record) -> None:
     """Print the tables and notes of every such section."""
-    for name in SECTIONS:
-        if name not in record.document["sections"]:
-            continue
-        section = record.document["sections"][name]
-        console.print(section.get("title", name), style="bold")
-        if section.get("summary"):
-            console.print(section["summary"])
-        for table in section.get("tables", ()):
+    for _, title, section in collections(record.sections):
+        console.print(section.title or title, style="bold")
+        if section.summary:
+            console.print(section.summary)
+        for table in section.tables:
             console.print()
             console.print(_table(table))
         console.print()
-        for text in section.get("notes", ()):
+        for text in section.notes:
             console.print(f"- {text}")
 
 
-def _table(table: Mapping[str, Any]) -> Any:
-    columns = table["columns"]
-    drawn = plain_table(*(column["label"] for column in columns))
-    drawn.title, drawn.title_justify, drawn.title_style = table["title"], "left", "italic"
-    for row in table["rows"]:
-        drawn.add_row(*(cell_text(row.get(column["key"])) for column in columns))
+def _table(table: TableEntry) -> Table:
+    drawn = plain_table(*(column.label for column in table.columns))
+    drawn.title, drawn.title_justify, drawn.title_style = table.title, "left", "italic"
+    for row in table.rows:
+        drawn.add_row(*(cell_text(row.get(column.key)) for column in table.columns))
     return drawn

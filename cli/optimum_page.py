@@ -93,7 +93,7 @@ def _details(console: Console, optimum: Optimum) -> None:
         how = f"{answer.cells} cells, {answer.solver}" if answer.peak > 0 else "no torque is needed"
         console.print(f"  impulse {impulse_words(optimum)}; {how}")
     for residual in residuals(optimum):
-        console.print(f"  {residual['label']}: {write(residual, most=2).ascii}")
+        console.print(f"  {residual.label}: {write(residual, most=2).ascii}")
     if answer.switching is not None and answer.switching.switch_times:
         times = answer.switching.switch_times
         shown = ", ".join(switch_words(optimum, t, j) for t, j in times[:MAX_SWITCHES])

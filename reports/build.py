@@ -80,4 +80,4 @@ def write_comparison(
 
 def exit_code(record: Record) -> int:
     """Exit code of the study that made the record; 0 if it had none."""
-    return int(record.document.get("outcome", {}).get("exit_code", 0))
+    return record.outcome.exit_code if record.outcome is not None else 0

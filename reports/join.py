@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 
 from .record import Array, Record, RecordError
-from .record.values import thaw
+from .record.document import Provenance, Sections
 
 
 def join(
@@ -25,39 +24,42 @@ def join(
         If the inputs differ, two records fill the same section in different ways, or give one array
         name to different arrays.
     """
-    first = records[0].document
-    hashes = {r.document["provenance"]["input_sha256"] for r in records}
-    if len(hashes) > 1:
+    if len({r.provenance.input_sha256 for r in records}) > 1:
         raise RecordError("records of different inputs cannot be joined")
-    sections: dict[str, Any] = {}
     arrays: dict[str, Array] = {}
     for record in records:
-        _add_sections(sections, thaw(record.document["sections"]))
         for name, value in record.arrays.items():
             if name in arrays and not np.array_equal(arrays[name], value):
                 raise RecordError(f"two records call different arrays {name!r}")
             arrays[name] = value
-    origin = _origin([thaw(r.document["provenance"]) for r in records])
-    origin |= {
-        key: value for key, value in (("command", command), ("date", date), ("author", author)) if value
-    }
-    outcome = thaw(first["outcome"]) if "outcome" in first else None
-    return Record.create(title=title, provenance=origin, sections=sections, arrays=arrays, outcome=outcome)
+    given = {"command": command, "date": date, "author": author}
+    origin = _origin([r.provenance for r in records]).but(**{k: v for k, v in given.items() if v})
+    sections = _sections([r.sections for r in records])
+    return Record.create(
+        title=title, provenance=origin, sections=sections, arrays=arrays, outcome=records[0].outcome
+    )
 
 
-def _add_sections(sections: dict[str, Any], more: Mapping[str, Any]) -> None:
-    for key, value in more.items():
-        if isinstance(value, list):
-            sections[key] = [*sections.get(key, []), *value]
-        elif key not in sections:
-            sections[key] = value
-        elif key not in {"scenario", "schedule"} and sections[key] != value:
-            raise RecordError(f"two records fill the section {key!r}")
+def _sections(all_sections: Sequence[Sections]) -> Sections:
+    found: dict[str, object] = {}
+    for sections in all_sections:
+        for key, value in sections.given().items():
+            held = found.get(key)
+            if isinstance(held, tuple):
+                found[key] = (*held, *value)
+            elif held is None:
+                found[key] = value
+            elif key not in {"scenario", "schedule"} and held != value:
+                raise RecordError(f"two records fill the section {key!r}")
+    return Sections.model_validate(found)
 
 
-def _origin(origins: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    joined = dict(origins[0])
-    for key in ("versions", "seeds", "options"):
-        joined[key] = {k: v for origin in reversed(origins) for k, v in origin[key].items()}
-    joined["effort"] = [e for origin in origins for e in origin.get("effort", [])]
-    return joined
+def _origin(origins: Sequence[Provenance]) -> Provenance:
+    """The first one's, with the versions, seeds, options and effort of all; the first to say one counts."""
+    backwards = origins[::-1]
+    return origins[0].but(
+        versions={k: v for origin in backwards for k, v in origin.versions.items()},
+        seeds={k: v for origin in backwards for k, v in origin.seeds.items()},
+        options={k: v for origin in backwards for k, v in origin.options.items()},
+        effort=tuple(e for origin in origins for e in origin.effort),
+    )

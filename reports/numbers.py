@@ -16,10 +16,11 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
 from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decimal
 from typing import Any, final
+
+from .record.claims import QuantityEntry
 
 MAX_DIGITS = 7
 """Digits shown at most, however many are known."""
@@ -75,12 +76,11 @@ class Written:
         return " ".join(p for p in (relation, body, unit_text(self.unit)) if p)
 
 
-def write(quantity: Mapping[str, Any], *, most: int = MAX_DIGITS, unit: bool = True) -> Written:
+def write(quantity: QuantityEntry, *, most: int = MAX_DIGITS, unit: bool = True) -> Written:
     """Write a record's quantity with the digits it deserves."""
-    low, high = (bound(quantity[k]) for k in ("low", "high"))
-    side = quantity.get("side", "both")
-    unit_name = quantity.get("unit", "") if unit else ""
-    rigorous, note = bool(quantity.get("rigorous")), str(quantity.get("note", ""))
+    low, high, side = quantity.low, quantity.high, quantity.side
+    unit_name = quantity.unit if unit else ""
+    rigorous, note = quantity.rigorous, quantity.note or ""
     if (low is None and side != "upper") or (high is None and side != "lower"):
         return Written("", "", "", 0, unit_name, rigorous, note)
     if side == "lower" and low is not None:
@@ -92,11 +92,6 @@ def write(quantity: Mapping[str, Any], *, most: int = MAX_DIGITS, unit: bool = T
     if low == 0 < high:
         return _one("<=", high, ROUND_CEILING, min(most, BOUND_DIGITS), unit_name, rigorous, note)
     return _between(low, high, most, unit_name, rigorous, note)
-
-
-def bound(value: Any) -> float | None:
-    """Read a stored bound: a number, "inf", "-inf" or None."""
-    return None if value is None else float(value)
 
 
 def number(value: float, digits: int = 6) -> str:

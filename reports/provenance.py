@@ -8,7 +8,10 @@ import platform
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
-from typing import Any
+
+from .record.document import Provenance
+from .record.runs import EffortEntry
+from .record.values import plain
 
 PACKAGES = ("casadi", "clarabel", "cvxpy", "numpy", "python-flint", "scipy", "heyoka")
 """Packages whose version can change a number."""
@@ -22,10 +25,10 @@ def provenance(
     command: str = "",
     author: str = "",
     seeds: Mapping[str, int] | None = None,
-    options: Mapping[str, Any] | None = None,
-    effort: Sequence[Mapping[str, Any]] = (),
+    options: Mapping[str, object] | None = None,
+    effort: Sequence[EffortEntry] = (),
     inputs: Sequence[bytes] = (),
-) -> dict[str, Any]:
+) -> Provenance:
     """Collect the provenance part of a record.
 
     Parameters
@@ -38,30 +41,30 @@ def provenance(
         What was asked, in the words of the command line, and by whom (for the title block).
     seeds, options
         Every seed and option that decides a number.
-    effort : sequence of {"label", "count"}
+    effort
         Counted work: evaluations, iterations, boxes. Never time.
     inputs : sequence of bytes
         Contents of the other files the scenario names, in order; they enter the hash.
 
     Returns
     -------
-    dict
+    Provenance
         `input_sha256` is the hash of the scenario's text and those files, each preceded by its length.
     """
-    return {
-        "package_version": package_version("intermit"),
-        "command": command,
-        "author": author,
-        "scenario_name": scenario_name,
-        "scenario_text": scenario_text,
-        "input_sha256": input_hash(scenario_text, inputs),
-        "date": date or source_date(),
-        "versions": {"python": platform.python_version()}
+    return Provenance(
+        package_version=package_version("intermit"),
+        command=command,
+        author=author,
+        scenario_name=scenario_name,
+        scenario_text=scenario_text,
+        input_sha256=input_hash(scenario_text, inputs),
+        date=date or source_date(),
+        versions={"python": platform.python_version()}
         | {p: v for p in PACKAGES if (v := package_version(p))},
-        "seeds": dict(seeds or {}),
-        "options": dict(options or {}),
-        "effort": [dict(e) for e in effort],
-    }
+        seeds=dict(seeds or {}),
+        options=plain(options or {}),
+        effort=tuple(effort),
+    )
 
 
 def input_hash(scenario_text: str, inputs: Sequence[bytes] = ()) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, final
+from typing import final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,6 +15,9 @@ from ..reports import parts
 from ..reports.content.cells import cell_text
 from ..reports.provenance import provenance
 from ..reports.record import Record
+from ..reports.record.claims import QuantityEntry
+from ..reports.record.document import Sections
+from ..reports.record.tables import TableEntry
 from ..scenario import Scenario
 
 
@@ -46,19 +49,19 @@ def task_of(scenario: Scenario) -> Task:
     )
 
 
-def printed(table: Mapping[str, Any]) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+def printed(table: TableEntry) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
     """A record's table in plain words: its head, and its rows."""
-    keys = [column["key"] for column in table["columns"]]
-    head = tuple(str(column["label"]) for column in table["columns"])
-    return head, [tuple(cell_text(row.get(key)) for key in keys) for row in table["rows"]]
+    keys = [column.key for column in table.columns]
+    head = tuple(column.label for column in table.columns)
+    return head, [tuple(cell_text(row.get(key)) for key in keys) for row in table.rows]
 
 
-def newtons(name: str, value: float | None, digits: int = 5) -> dict[str, Any]:
+def newtons(name: str, value: float | None, digits: int = 5) -> QuantityEntry:
     """A torque, N m."""
     return parts.figure_of(name, value, digits=digits, unit="N m")
 
 
-def certified_below(name: str, value: float) -> dict[str, Any]:
+def certified_below(name: str, value: float) -> QuantityEntry:
     """A certified lower bound on a torque, N m: shown rounded down."""
     return parts.quantity(name, value, unit="N m", rigorous=True, side="lower")
 
@@ -68,10 +71,10 @@ def collection_record(
     *,
     title: str,
     command: str,
-    sections: dict[str, Any],
+    sections: Sections,
     arrays: Arrays,
     seeds: dict[str, int] | None = None,
-    options: dict[str, Any] | None = None,
+    options: Mapping[str, object] | None = None,
 ) -> Record:
     """Record of a study made of tables and figures."""
     found = provenance(
@@ -80,5 +83,5 @@ def collection_record(
         command=command,
         seeds=seeds or {},
         options=options or {},
-    ) | {"input_sha256": scenario.sha256}
+    ).but(input_sha256=scenario.sha256)
     return Record.create(title=title, provenance=found, sections=sections, arrays=arrays.held)

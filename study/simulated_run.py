@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, final
+from typing import final
 
 import numpy as np
 
@@ -26,6 +26,8 @@ from ..models.simulation import (
 from ..models.simulation.idle import idle_lead
 from ..models.types import Array
 from ..reports import parts
+from ..reports.record.claims import QuantityEntry
+from ..reports.record.runs import EffortEntry, RunArrays, RunEntry
 from ..scenario import Scenario
 from .histories import output_times
 
@@ -117,7 +119,7 @@ def run_law(scenario: Scenario, law: Law) -> Run:
     return Run(trajectory, figures, invariants(trajectory), origin=lead)
 
 
-def metrics(run: Run) -> list[dict[str, Any]]:
+def metrics(run: Run) -> list[QuantityEntry]:
     """Figures of a run as quantities of the record; the simulation is good to 8 digits, 6 are shown."""
     if run.figures is None or run.drift is None:
         return []
@@ -151,7 +153,7 @@ def metrics(run: Run) -> list[dict[str, Any]]:
     return out
 
 
-def _figure(name: str, value: float, unit: str, label: str) -> dict[str, Any]:
+def _figure(name: str, value: float, unit: str, label: str) -> QuantityEntry:
     return parts.figure_of(name, value, digits=6, unit=unit, label=label)
 
 
@@ -162,8 +164,8 @@ def controller_decays(run: Run) -> bool:
 
 def run_entry(
     scenario: Scenario, run: Run, key: str, label: str, further: Mapping[str, Array] | None = None
-) -> tuple[dict[str, Any], dict[str, Array]]:
-    """A run as the record's mapping and its arrays, on the scenario's output grid (`output_times`).
+) -> tuple[RunEntry, dict[str, Array]]:
+    """A run as the record has it and its arrays, on the scenario's output grid (`output_times`).
 
     `further` holds more histories on that grid, by their role in the record.
     """
@@ -181,11 +183,27 @@ def run_entry(
         f"{key}.error_rate": signals.augmented_rate.T,
     }
     arrays |= {f"{key}.{role}": value for role, value in (further or {}).items()}
-    roles: dict[str, Any] = {name.removeprefix(f"{key}."): name for name in arrays}
-    controller = trajectory.loop.state_names[7:]
-    if controller:
-        roles["controller"] = {name: f"{key}.controller.{name}" for name in controller}
-        arrays |= {f"{key}.controller.{name}": states[7 + i] for i, name in enumerate(controller)}
+    names = trajectory.loop.state_names[7:]
+    controller = {name: f"{key}.controller.{name}" for name in names}
+    arrays |= {array: states[7 + i] for i, array in enumerate(controller.values())}
+
+    def held(role: str) -> str | None:
+        return f"{key}.{role}" if f"{key}.{role}" in arrays else None
+
+    roles = RunArrays(
+        time=f"{key}.time",
+        quaternion=held("quaternion"),
+        rate=held("rate"),
+        controller=controller or None,
+        command=held("command"),
+        torque=held("torque"),
+        gain=held("gain"),
+        error_rate=held("error_rate"),
+        storage=held("storage"),
+        storage_bound=held("storage_bound"),
+        storage_rate=held("storage_rate"),
+        storage_rate_bound=held("storage_rate_bound"),
+    )
     notes = [f"The run covers [0, {float(scenario.horizon):g}] s."]
     if run.origin:
         known = " (what the law's own states do is known exactly)" if controller_decays(run) else ""
@@ -195,13 +213,13 @@ def run_entry(
         )
     if trajectory.is_saturated_model:
         notes.append("The torque was limited in this run: no claim covers a saturated run.")
-    entry = {
-        "key": key,
-        "label": label,
-        "metrics": metrics(run),
-        "arrays": roles,
-        "saturated": trajectory.is_saturated_model,
-        "effort": [{"label": "right-hand sides", "count": int(trajectory.evaluations)}],
-        "notes": notes,
-    }
+    entry = RunEntry(
+        key=key,
+        label=label,
+        metrics=tuple(metrics(run)),
+        arrays=roles,
+        saturated=trajectory.is_saturated_model,
+        effort=(EffortEntry(label="right-hand sides", count=int(trajectory.evaluations)),),
+        notes=tuple(notes),
+    )
     return entry, arrays

@@ -117,7 +117,7 @@ class Simulation(Shown):
         title = f"{self.label} in {self.scenario.name}"
         if self.run.trajectory is None:
             return Summary(title, (self.run.failure,))
-        rows = [(str(entry["name"]).replace("_", " "), write(entry).ascii) for entry in metrics(self.run)]
+        rows = [(entry.name.replace("_", " "), write(entry).ascii) for entry in metrics(self.run)]
         line = f"Simulated from the initial state over [0, {float(self.scenario.horizon):g}] s."
         return Summary(title, (line,), ((("Figure", self.label), rows),))
 

@@ -7,6 +7,8 @@ from typing import Any
 from intermit.reports import Record
 from intermit.reports.parts import quantity
 from intermit.reports.provenance import provenance
+from intermit.reports.record.base import parts_of
+from intermit.reports.record.claims import QuantityEntry
 from synthetic_laws import case
 from synthetic_runs import HORIZON, J1, Array
 from synthetic_studies import audit, comparison, front, optimum, samples, schedule
@@ -24,6 +26,11 @@ on_time = 3.2
 axis = [1, 1, 1]
 angle_deg = 120
 """
+
+
+def quantities(record: Record) -> list[QuantityEntry]:
+    """Every number with bounds in a record."""
+    return [part for _, part in parts_of(record.sections, "record") if isinstance(part, QuantityEntry)]
 
 
 def make(

@@ -4,14 +4,39 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, final
+from typing import Literal, final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..record.claims import ClaimEntry, QuantityEntry
+from ..record.tables import CellEntry, CodeCell
+
 Array = NDArray[np.float64]
-Cell = str | None | Mapping[str, Any]
-"""Text, nothing, a quantity, {"verdict": ...}, {"code": ...} or {"matrix": ..., "unit": ...}."""
+
+
+@final
+@dataclass(frozen=True)
+class MatrixCell:
+    """A matrix and its unit."""
+
+    matrix: tuple[tuple[float, ...], ...]
+    unit: str
+
+
+Cell = CellEntry | MatrixCell
+"""Text, nothing, a quantity, a verdict, a code or a matrix."""
+
+
+def code(text: str) -> CodeCell:
+    """A cell set as code."""
+    return CodeCell(code=text)
+
+
+def law_row(label: str, figures: Sequence[QuantityEntry]) -> dict[str, Cell]:
+    """A table's row: the law, and each figure under its name."""
+    row: dict[str, Cell] = {"law": label}
+    return row | {figure.name: figure for figure in figures}
 
 
 @final
@@ -30,7 +55,7 @@ class Card:
 
     label: str
     verdicts: tuple[tuple[str, int], ...]
-    numbers: tuple[Mapping[str, Any], ...]
+    numbers: tuple[QuantityEntry, ...]
 
 
 @final
@@ -47,13 +72,13 @@ class Group:
     """Claims under one heading; `number` names it in anchors."""
 
     label: str
-    claims: tuple[Mapping[str, Any], ...]
+    claims: tuple[ClaimEntry, ...]
     number: int = 0
 
-    def entries(self, *, counted: bool) -> tuple[tuple[str, Mapping[str, Any]], ...]:
+    def entries(self, *, counted: bool) -> tuple[tuple[str, ClaimEntry], ...]:
         """Anchor and claim, of those that decide the exit code or of the others."""
         anchored = ((f"claim-{self.number}-{i + 1}", claim) for i, claim in enumerate(self.claims))
-        return tuple((a, claim) for a, claim in anchored if claim.get("counted", True) is counted)
+        return tuple((a, claim) for a, claim in anchored if claim.counted is counted)
 
 
 @final

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from ..numbers import write
+from ..record.claims import QuantityEntry
+from ..record.tables import CodeCell, VerdictCell
 from .blocks import Cell
 
 
 def cell_text(cell: Cell) -> str:
-    """Text, a verdict with its words, a code, or a quantity with the digits it deserves; "-" for nothing."""
+    """Text, a verdict, a code, or a quantity with the digits it deserves; "-" for nothing."""
     if cell is None:
         return "-"
     if isinstance(cell, str):
         return cell
-    if "verdict" in cell:
-        return f"{cell['verdict']} {cell.get('text', '')}".strip()
-    if "code" in cell:
-        return str(cell["code"])
-    return write(cell).ascii
+    if isinstance(cell, VerdictCell):
+        return cell.verdict
+    if isinstance(cell, CodeCell):
+        return cell.code
+    if isinstance(cell, QuantityEntry):
+        return write(cell).ascii
+    return f"{len(cell.matrix)} x {len(cell.matrix[0])} matrix"

@@ -8,7 +8,7 @@ from .optimum import optimum_chapter
 from .problem import problem_chapter, provenance_chapter, schedule_chapter
 from .runs import attitude_chapter, filter_chapter, storage_chapter, torque_chapter
 from .studies import collection_chapter, samples_chapter
-from .verdicts import COLLECTIONS, claims_chapter, verdict_chapter
+from .verdicts import claims_chapter, collections, verdict_chapter
 
 
 def chapters(record: Record) -> tuple[Chapter, ...]:
@@ -23,7 +23,7 @@ def chapters(record: Record) -> tuple[Chapter, ...]:
         storage_chapter(record),
         samples_chapter(record),
         optimum_chapter(record),
-        *(collection_chapter(record, key, title) for key, title in COLLECTIONS.items()),
+        *(collection_chapter(record, *held) for held in collections(record.sections)),
         claims_chapter(record),
         provenance_chapter(record),
     ]

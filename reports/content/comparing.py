@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterator, Mapping
-from typing import Any
 
 from ..numbers import write
 from ..record import Record
+from ..record.base import unit_of
+from ..record.claims import ClaimEntry, QuantityEntry
+from ..record.runs import RunArrays
+from ..record.tables import VerdictCell
 from .blocks import Axis, Block, Cell, Chapter, Chart, Charts, Facts, Line, Table, Text, Verbatim
 from .problem import shaded
 from .runs import TIME, Run, runs_of
@@ -16,9 +19,9 @@ from .wording import plural
 
 SIDES = ("A", "B")
 ROLES = (
-    ("torque", "Applied torque g u", "g u", "N m", ("x", "y", "z")),
-    ("quaternion", "Attitude", "β", "", ("β₀", "β₁", "β₂", "β₃")),
-    ("rate", "Rate", "ω", "rad/s", ("ω₁", "ω₂", "ω₃")),
+    ("torque", "Applied torque g u", "g u", ("x", "y", "z")),
+    ("quaternion", "Attitude", "β", ("β₀", "β₁", "β₂", "β₃")),
+    ("rate", "Rate", "ω", ("ω₁", "ω₂", "ω₃")),
 )
 
 Key = tuple[str, str]
@@ -28,7 +31,7 @@ def comparison_sentence(a: Record, b: Record) -> str:
     """How many verdicts differ."""
     left, right = _claims(a), _claims(b)
     both = [key for key in left if key in right]
-    changed = sum(left[key]["verdict"] != right[key]["verdict"] for key in both)
+    changed = sum(left[key].verdict != right[key].verdict for key in both)
     alone = len(left) + len(right) - 2 * len(both)
     only = f"; {plural(alone, 'claim')} in one record only" if alone else ""
     return f"{plural(len(both), 'claim')} in both: {changed} with another verdict{only}."
@@ -40,15 +43,15 @@ def comparison_chapters(a: Record, b: Record) -> tuple[Chapter, ...]:
     return tuple(c for c in found if c is not None)
 
 
-def _claims(record: Record) -> dict[Key, Mapping[str, Any]]:
-    found: dict[Key, Mapping[str, Any]] = {}
+def _claims(record: Record) -> dict[Key, ClaimEntry]:
+    found: dict[Key, ClaimEntry] = {}
     for group in groups(record):
         for claim in group.claims:
-            found.setdefault((group.label, claim["key"]), claim)
+            found.setdefault((group.label, claim.key), claim)
     return found
 
 
-def _ordered(left: Mapping[Key, Any], right: Mapping[Key, Any]) -> list[Key]:
+def _ordered(left: Mapping[Key, object], right: Mapping[Key, object]) -> list[Key]:
     return [*left, *(key for key in right if key not in left)]
 
 
@@ -57,10 +60,10 @@ def _verdicts(a: Record, b: Record) -> Chapter:
     rows = []
     for key in _ordered(left, right):
         sides = (left.get(key), right.get(key))
-        verdicts = [s["verdict"] if s else None for s in sides]
-        row: dict[str, Cell] = {"of": key[0], "claim": next(s["title"] for s in sides if s)}
+        verdicts = [s.verdict if s else None for s in sides]
+        row: dict[str, Cell] = {"of": key[0], "claim": next(s.title for s in sides if s)}
         for name, side in zip(SIDES, sides, strict=True):
-            row[name] = {"verdict": side["verdict"]} if side else None
+            row[name] = VerdictCell(verdict=side.verdict) if side else None
             row[f"m{name}"] = _margins(side)
         row["change"] = "changed" if verdicts[0] != verdicts[1] else "same"
         rows.append(row)
@@ -76,26 +79,26 @@ def _verdicts(a: Record, b: Record) -> Chapter:
 
 
 def _name(record: Record) -> str:
-    origin = record.document["provenance"]
-    date = f", {origin['date']}" if origin["date"] else ""
-    return f"{record.document['title']} ({origin['scenario_name']}{date}), record {record.sha256[:12]}"
+    origin = record.provenance
+    date = f", {origin.date}" if origin.date else ""
+    return f"{record.title} ({origin.scenario_name}{date}), record {record.sha256[:12]}"
 
 
-def _margins(claim: Mapping[str, Any] | None) -> str | None:
-    if claim is None or not claim["margins"]:
+def _margins(claim: ClaimEntry | None) -> str | None:
+    if claim is None or not claim.margins:
         return None
-    return "; ".join(f"{q.get('label') or q['name']} {write(q).text}" for q in claim["margins"])
+    return "; ".join(f"{q.words} {write(q).text}" for q in claim.margins)
 
 
-def _metrics(record: Record) -> dict[Key, Mapping[str, Any]]:
-    found: dict[Key, Mapping[str, Any]] = {}
+def _metrics(record: Record) -> dict[Key, QuantityEntry]:
+    found: dict[Key, QuantityEntry] = {}
     for run in runs_of(record):
-        for q in run.data["metrics"]:
-            found.setdefault((run.label, q["name"]), q)
-    for entry in record.document["sections"].get("optimum", ()):
-        for key in ("value", "bound", "gap"):
-            if entry.get(key):
-                found.setdefault((entry["label"], entry[key].get("label") or key), entry[key])
+        for q in run.data.metrics:
+            found.setdefault((run.label, q.name), q)
+    for entry in record.sections.optimum:
+        for key, figure in (("value", entry.value), ("bound", entry.bound), ("gap", entry.gap)):
+            if figure is not None:
+                found.setdefault((entry.label, figure.label or key), figure)
     return found
 
 
@@ -104,7 +107,7 @@ def _numbers(a: Record, b: Record) -> Chapter | None:
     rows = tuple(
         {
             "of": key[0],
-            "what": (left.get(key) or right[key]).get("label") or key[1],
+            "what": (left.get(key) or right[key]).label or key[1],
             "A": left.get(key),
             "B": right.get(key),
         }
@@ -131,12 +134,20 @@ def _histories(a: Record, b: Record) -> Chapter | None:
     windows = shaded(a) if shaded(a) == shaded(b) else ()
     for i, (one, two) in enumerate(_pairs(a, b)):
         label = one.label if one.label == two.label else f"{one.label} / {two.label}"
-        for role, words, axis, unit, names in ROLES:
+        for role, words, axis, names in ROLES:
             lines = _lines(one, two, role, names)
             if lines:
                 alt = f"{words} of {label}: A solid, B dashed."
                 charts.append(
-                    Chart(f"{role}-{i + 1}", f"{words}: {label}", TIME, Axis(axis, unit), lines, alt, windows)
+                    Chart(
+                        f"{role}-{i + 1}",
+                        f"{words}: {label}",
+                        TIME,
+                        Axis(axis, unit_of(RunArrays, role)),
+                        lines,
+                        alt,
+                        windows,
+                    )
                 )
         charts += _states(one, two, i, label, windows)
     blocks: list[Block] = [Text("A is drawn solid, B dashed.", "note"), Charts(tuple(charts))]
@@ -160,7 +171,7 @@ def _lines(one: Run, two: Run, role: str, names: tuple[str, ...]) -> tuple[Line,
 def _states(
     one: Run, two: Run, index: int, label: str, windows: tuple[tuple[float, float], ...]
 ) -> Iterator[Chart]:
-    held = [run.data["arrays"].get("controller", {}) for run in (one, two)]
+    held = [run.data.arrays.controller or {} for run in (one, two)]
     for state, unit in (("R", "s"), ("k", "1/s")):
         lines = tuple(
             Line(f"{side} {state}", run.time, run.record.array(names[state]), colour=j, dashed=side == "B")
@@ -175,16 +186,16 @@ def _states(
 
 
 def _input(a: Record, b: Record) -> Chapter:
-    one, two = (r.document["provenance"] for r in (a, b))
-    before, after = (o["scenario_text"].splitlines() for o in (one, two))
+    one, two = (r.provenance for r in (a, b))
+    before, after = (o.scenario_text.splitlines() for o in (one, two))
     lines = list(difflib.unified_diff(before, after, "A", "B", lineterm="", n=2))
     blocks: list[Block] = [
         Verbatim("Lines of the scenario that differ", "\n".join(lines))
         if lines
         else Text("The two scenario files are the same.")
     ]
-    names = sorted({*one["versions"], *two["versions"]} | {"intermit"})
-    versions = [{**o["versions"], "intermit": o["package_version"]} for o in (one, two)]
+    names = sorted({*one.versions, *two.versions} | {"intermit"})
+    versions = [{**o.versions, "intermit": o.package_version} for o in (one, two)]
     rows = tuple({"what": n, "A": versions[0].get(n), "B": versions[1].get(n)} for n in names)
     columns = (("what", "Package", ""), ("A", "A", ""), ("B", "B", ""))
     blocks.append(Table("versions", "Versions", columns, rows))

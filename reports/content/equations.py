@@ -7,9 +7,9 @@ only if it is built of the words of formulas; any other is shown as its author w
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
-from typing import Any
+from collections.abc import Iterable
 
+from ..record.runs import CaseEntry
 from .blocks import Block, Equation, Equations, Verbatim
 from .typeset import equation_svgs
 
@@ -38,19 +38,19 @@ _COMMANDS = frozenset(
 _ENVIRONMENTS = frozenset({"aligned", "cases", "pmatrix", "bmatrix"})
 
 
-def equation_blocks(cases: Iterable[Mapping[str, Any]]) -> tuple[Block, ...]:
+def equation_blocks(cases: Iterable[CaseEntry]) -> tuple[Block, ...]:
     """The plant's equations and each law's, every one once; what cannot be set, as it is written."""
     chosen, literal = [PLANT], list[Block]()
     for case in cases:
-        for entry in case.get("equations", ()):
-            equation = Equation(entry["title"], entry["typst"], entry["latex"])
+        for entry in case.equations:
+            equation = Equation(entry.title, entry.typst, entry.latex)
             if equation in chosen:
                 continue
             if is_formula(equation) and _compiles(equation):
                 chosen.append(equation)
             else:
                 text = f"{equation.title}\n{equation.latex}"
-                literal.append(Verbatim(f"{case['label']}: the law as its author states it", text))
+                literal.append(Verbatim(f"{case.label}: the law as its author states it", text))
     return (Equations(tuple(chosen)), *literal)
 
 

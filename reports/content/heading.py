@@ -48,16 +48,16 @@ class Heading:
 
 def heading(record: Record) -> Heading:
     """Title block of one record's report."""
-    origin = record.document["provenance"]
+    origin, outcome = record.provenance, record.outcome
     return Heading(
-        title=record.document["title"],
+        title=record.title,
         sentence=answer(record),
-        scenario=origin["scenario_name"],
-        author=origin.get("author", ""),
-        date=origin["date"],
-        version=origin["package_version"],
+        scenario=origin.scenario_name,
+        author=origin.author,
+        date=origin.date,
+        version=origin.package_version,
         digests=(record.sha256,),
-        status=OUTCOMES.get(record.document.get("outcome", {}).get("exit_code", -1), ""),
+        status=OUTCOMES.get(outcome.exit_code, "") if outcome is not None else "",
     )
 
 

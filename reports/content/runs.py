@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, final
+from typing import final
 
 import numpy as np
 
 from ..record import Array, Record
+from ..record.base import unit_of
+from ..record.runs import BoundArrays, CaseEntry, RunArrays, RunEntry
 from .blocks import Axis, Block, Body, Chapter, Chart, Charts, Line, Replay, Table, Text
 from .problem import shaded
 from .verdicts import floors
@@ -28,33 +30,33 @@ class Run:
 
     key: str
     label: str
-    case: Mapping[str, Any]
-    data: Mapping[str, Any]
+    case: CaseEntry
+    data: RunEntry
     record: Record
 
     def array(self, role: str) -> Array | None:
         """Array in this role, if the run has it."""
-        name = self.data["arrays"].get(role)
+        name = self.data.arrays.array_names().get(role)
         return None if name is None else self.record.array(name)
 
     def controller(self, state: str) -> Array | None:
         """Values of one controller state, if the law has it."""
-        name = self.data["arrays"].get("controller", {}).get(state)
+        name = (self.data.arrays.controller or {}).get(state)
         return None if name is None else self.record.array(name)
 
     @property
     def time(self) -> Array:
         """Times, (n,), s."""
-        return self.record.array(self.data["arrays"]["time"])
+        return self.record.array(self.data.arrays.time)
 
 
 def runs_of(record: Record) -> tuple[Run, ...]:
     """Every run of every case; the run's label is added where a law has several."""
     found = []
-    for i, case in enumerate(record.document["sections"].get("cases", ())):
-        runs = case.get("runs", ())
+    for i, case in enumerate(record.sections.cases):
+        runs = case.runs
         for j, run in enumerate(runs):
-            label = case["label"] if len(runs) == 1 else f"{case['label']}, {run['label']}"
+            label = case.label if len(runs) == 1 else f"{case.label}, {run.label}"
             found.append(Run(f"{i + 1}" if len(runs) == 1 else f"{i + 1}-{j + 1}", label, case, run, record))
     return tuple(found)
 
@@ -90,11 +92,11 @@ def metrics_table(runs: tuple[Run, ...]) -> Table | None:
     """Runs beside each other, one row a figure; one row a run if there are many."""
     columns: dict[str, tuple[str, str]] = {}
     for run in runs:
-        for q in run.data["metrics"]:
-            columns.setdefault(q["name"], (q.get("label") or q["name"], q.get("unit", "")))
+        for q in run.data.metrics:
+            columns.setdefault(q.name, (q.words, q.unit))
     if not columns:
         return None
-    held = [{q["name"]: q for q in run.data["metrics"]} for run in runs]
+    held = [{q.name: q for q in run.data.metrics} for run in runs]
     if len(runs) <= MAX_BESIDE:
         heads = (("what", "Figure", ""), *((str(i), run.label, "") for i, run in enumerate(runs)))
         lines = tuple(
@@ -117,7 +119,7 @@ def torque_chapter(record: Record) -> Chapter | None:
             record,
             "torque",
             "Applied torque g u",
-            Axis("g u", "N m"),
+            Axis("g u", unit_of(RunArrays, "torque")),
             [(r, _components(r, "torque", axes)) for r in runs],
         )
     )
@@ -127,13 +129,13 @@ def torque_chapter(record: Record) -> Chapter | None:
             record,
             "command",
             "Commanded torque u",
-            Axis("u", "N m"),
+            Axis("u", unit_of(RunArrays, "command")),
             [(r, _components(r, "command", axes)) for r in runs],
         )
     )
     blocks: list[Block] = [table] if table else []
     blocks += [Charts(tuple(c)) for c in (applied, commanded) if c]
-    notes = ((run.label, note) for run in runs for note in run.data.get("notes", ()))
+    notes = ((run.label, note) for run in runs for note in run.data.notes)
     blocks.extend(Text(note, "note") for note in shared(notes))
     return Chapter("torque", "Torque", tuple(blocks)) if blocks else None
 
@@ -146,7 +148,7 @@ def filter_chapter(record: Record) -> Chapter | None:
     for run in runs:
         values = run.controller("R")
         if values is not None:
-            lines = [Line("R", run.time, values), *floors_by_case.get(run.case["key"], ())]
+            lines = [Line("R", run.time, values), *floors_by_case.get(run.case.key, ())]
             words = f"Filter state R{' and its certified floor' if len(lines) > 1 else ''}"
             log = bool(np.all(values > 0))
             alt = f"{words} of {run.label} over time, thruster windows shaded."
@@ -170,35 +172,37 @@ def filter_chapter(record: Record) -> Chapter | None:
 def _by_case(record: Record, role: str, label: str) -> dict[str, list[Line]]:
     """Certified curves of each law, or the level its certificate or claim states."""
     found: dict[str, list[Line]] = {}
-    for case in record.document["sections"].get("cases", ()):
-        holders = [c["arrays"] for c in case.get("certificates", ()) if role in c.get("arrays", {})]
-        lines = [
-            Line(label, record.array(a["time"]), record.array(a[role]), colour=1, dashed=True)
-            for a in holders
-        ]
-        known = floors(case)
-        if not lines and known and case.get("runs"):
-            t = record.array(case["runs"][0]["arrays"]["time"])[[0, -1]]
-            lines = [Line(label, t, np.full(2, float(known[0]["low"])), colour=1, dashed=True)]
-        found[case["key"]] = lines
+    for case in record.sections.cases:
+        lines = [Line(label, t, values, colour=1, dashed=True) for t, values in _bounds(record, case, role)]
+        known = [q.low for q in floors(case) if q.low is not None]
+        if not lines and known and case.runs:
+            t = record.array(case.runs[0].arrays.time)[[0, -1]]
+            lines = [Line(label, t, np.full(2, float(known[0])), colour=1, dashed=True)]
+        found[case.key] = lines
     return found
 
 
 def _certified(record: Record, role: str) -> list[Line]:
     """Collect the certified curves of one role, one per law that has it, in the law's colour, dashed."""
     lines = []
-    for i, case in enumerate(record.document["sections"].get("cases", ())):
-        for certificate in case.get("certificates", ()):
-            names = certificate.get("arrays", {})
-            if role in names:
-                t, values = record.array(names["time"]), record.array(names[role])
-                lines.append(Line(case["label"], t, values, colour=i, dashed=True))
+    for i, case in enumerate(record.sections.cases):
+        lines += [
+            Line(case.label, t, values, colour=i, dashed=True) for t, values in _bounds(record, case, role)
+        ]
     return lines
+
+
+def _bounds(record: Record, case: CaseEntry, role: str) -> Iterator[tuple[Array, Array]]:
+    """Times and values of a case's certified bounds of one role."""
+    for certificate in case.certificates:
+        names = certificate.arrays.array_names() if certificate.arrays is not None else {}
+        if role in names:
+            yield record.array(names["time"]), record.array(names[role])
 
 
 def _other_states(record: Record, runs: tuple[Run, ...]) -> Iterator[Chart]:
     for run in runs:
-        for i, (state, name) in enumerate(sorted(run.data["arrays"].get("controller", {}).items())):
+        for i, (state, name) in enumerate(sorted((run.data.arrays.controller or {}).items())):
             if state in {"R", "k"}:
                 continue
             values = record.array(name).reshape(len(run.time), -1)
@@ -221,14 +225,14 @@ def attitude_chapter(record: Record) -> Chapter | None:
         *_envelopes(record, "angle"),
     ]
     rates = [
-        *_beside(record, "rate", "Rate", Axis("ω", "rad/s"), rate),
+        *_beside(record, "rate", "Rate", Axis("ω", unit_of(RunArrays, "rate")), rate),
         *_envelopes(record, "speed"),
         *_envelopes(record, "rate"),
     ]
     blocks: list[Block] = []
     bodies = _bodies(record, runs)
     if bodies:
-        inertia = record.document["sections"].get("scenario", {}).get("inertia")
+        inertia = record.sections.scenario.inertia if record.sections.scenario is not None else None
         blocks.append(Replay(bodies, shaded(record), inertia))
     blocks += [Charts(tuple(group)) for group in (attitude, rates) if group]
     return Chapter("attitude", "Attitude and rate", tuple(blocks)) if blocks else None
@@ -236,22 +240,15 @@ def attitude_chapter(record: Record) -> Chapter | None:
 
 def _envelopes(record: Record, what: str) -> Iterator[Chart]:
     words = {
-        "torque": ("Certified bound on the applied torque |g u|", "N m"),
-        "angle": ("Certified bound on the error angle", "rad"),
-        "speed": ("Certified bound on the rate |ω|", "rad/s"),
-        "rate": ("Certified bound on sqrt(Ω' J Ω)", "kg^1/2 m rad/s"),
+        "torque": "Certified bound on the applied torque |g u|",
+        "angle": "Certified bound on the error angle",
+        "speed": "Certified bound on the rate |ω|",
+        "rate": "Certified bound on sqrt(Ω' J Ω)",
     }[what]
     lines = _certified(record, f"{what}_bound")
     if lines:
-        yield Chart(
-            f"bound-{what}",
-            words[0],
-            TIME,
-            Axis("bound", words[1]),
-            tuple(lines),
-            f"{words[0]} over time.",
-            shaded(record),
-        )
+        axis = Axis("bound", unit_of(BoundArrays, f"{what}_bound"))
+        yield Chart(f"bound-{what}", words, TIME, axis, tuple(lines), f"{words} over time.", shaded(record))
 
 
 def _bodies(record: Record, runs: tuple[Run, ...]) -> tuple[Body, ...]:
@@ -260,13 +257,12 @@ def _bodies(record: Record, runs: tuple[Run, ...]) -> tuple[Body, ...]:
         attitude = run.array("quaternion")
         if attitude is not None:
             found.append(Body(run.label, run.time, attitude, run.array("torque")))
-    for optimum in record.document["sections"].get("optimum", ()):
-        names = optimum.get("arrays", {})
-        if "quaternion" in names:
-            torque = record.array(names["torque"]) if "torque" in names else None
-            found.append(
-                Body(optimum["label"], record.array(names["time"]), record.array(names["quaternion"]), torque)
-            )
+    for optimum in record.sections.optimum:
+        names = optimum.arrays
+        if names is not None and names.quaternion is not None:
+            torque = record.array(names.torque) if names.torque is not None else None
+            time, attitude = record.array(names.time), record.array(names.quaternion)
+            found.append(Body(optimum.label, time, attitude, torque))
     return tuple(found)
 
 
@@ -274,10 +270,7 @@ def storage_chapter(record: Record) -> Chapter | None:
     """V and V' with their bounds along each run."""
     charts = []
     for run in runs_of(record):
-        for role, words, unit in (
-            ("storage", "Lyapunov function V", "kg m^2/s"),
-            ("storage_rate", "Derivative V'", "kg m^2/s^2"),
-        ):
+        for role, words in (("storage", "Lyapunov function V"), ("storage_rate", "Derivative V'")):
             values, bound = run.array(role), run.array(f"{role}_bound")
             if values is None:
                 continue
@@ -287,7 +280,7 @@ def storage_chapter(record: Record) -> Chapter | None:
             log = role == "storage" and float(values.max()) > WIDE * float(values.min()) > 0
             alt = f"{words} of {run.label} along the run{' with its bound' if bound is not None else ''}."
             title = f"{words}: {run.label}"
-            axis = Axis("V" if role == "storage" else "V'", unit, log)
+            axis = Axis("V" if role == "storage" else "V'", unit_of(RunArrays, role), log)
             charts.append(
                 Chart(
                     f"{role.replace('_', '-')}-{run.key}",

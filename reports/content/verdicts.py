@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator
 
 from ..numbers import write
 from ..record import Record
+from ..record.claims import ClaimEntry, QuantityEntry
+from ..record.document import Sections
+from ..record.runs import CaseEntry
+from ..record.tables import CollectionEntry
 from .blocks import Block, Card, Cards, Chapter, ClaimDetails, Group, Text, Verdicts
 from .wording import plural, short
 
@@ -24,48 +27,50 @@ HEADLINE_NUMBERS = (
 
 def groups(record: Record) -> tuple[Group, ...]:
     """Claims by subject: the schedule's, each law's, the optimum's, the collections'."""
-    found = ((label, tuple(claims)) for label, claims in _groups(record.document["sections"]) if claims)
+    found = ((label, tuple(claims)) for label, claims in _groups(record.sections) if claims)
     return tuple(Group(label, claims, i + 1) for i, (label, claims) in enumerate(found))
 
 
-def _groups(sections: Mapping[str, Any]) -> Iterator[tuple[str, list[Mapping[str, Any]]]]:
-    yield "Schedule", list(sections.get("schedule", {}).get("claims", ()))
-    for case in sections.get("cases", ()):
-        yield case["label"], list(case.get("claims", ()))
-    for optimum in sections.get("optimum", ()):
-        yield optimum["label"], list(optimum.get("claims", ()))
-    for key, title in COLLECTIONS.items():
-        yield title, list(sections.get(key, {}).get("claims", ()))
+def _groups(sections: Sections) -> Iterator[tuple[str, tuple[ClaimEntry, ...]]]:
+    if sections.schedule is not None:
+        yield "Schedule", sections.schedule.claims
+    for case in sections.cases:
+        yield case.label, case.claims
+    for _, title, collection in collections(sections):
+        yield title, collection.claims
 
 
-COLLECTIONS = {
-    "comparison": "Law against optimum",
-    "front": "Peak torque against settling time",
-    "tuning": "Tuning",
-    "schedule_study": "Schedule study",
-    "paper_claims": "The paper's claims",
-    "audit": "Audit of the printed equations",
-}
+def collections(sections: Sections) -> Iterator[tuple[str, str, CollectionEntry]]:
+    """The studies made of tables and figures that the record holds: key, title, and what is in it."""
+    held = (
+        ("comparison", "Law against optimum", sections.comparison),
+        ("front", "Peak torque against settling time", sections.front),
+        ("tuning", "Tuning", sections.tuning),
+        ("schedule-study", "Schedule study", sections.schedule_study),
+        ("paper-claims", "The paper's claims", sections.paper_claims),
+        ("audit", "Audit of the printed equations", sections.audit),
+    )
+    for key, title, collection in held:
+        if collection is not None:
+            yield key, title, collection
 
 
-def refutation(claim: Mapping[str, Any]) -> str:
+def refutation(claim: ClaimEntry) -> str:
     """Say in one line what refutes a claim, and by how much; empty if nothing does."""
-    witness = claim.get("witness")
-    if not witness:
+    if claim.witness is None:
         return ""
-    violation = witness["violation"]
-    return f"{witness['description']}: {violation.get('label') or violation['name']} {write(violation).text}"
+    violation = claim.witness.violation
+    return f"{claim.witness.description}: {violation.words} {write(violation).text}"
 
 
-def claim_numbers(claim: Mapping[str, Any]) -> tuple[Mapping[str, Any], ...]:
+def claim_numbers(claim: ClaimEntry) -> tuple[QuantityEntry, ...]:
     """Numbers the verdict table shows: the margins, or without any the first rigorous quantity."""
-    rigorous = [q for q in claim["quantities"] if q.get("rigorous")][:1]
-    return tuple(claim["margins"] or rigorous)
+    return claim.margins or tuple(q for q in claim.quantities if q.rigorous)[:1]
 
 
-def counted(claims: tuple[Mapping[str, Any], ...]) -> tuple[tuple[str, int], ...]:
+def counted(claims: tuple[ClaimEntry, ...]) -> tuple[tuple[str, int], ...]:
     """How many of the claims that count have each verdict."""
-    deciding = [c["verdict"] for c in claims if c.get("counted", True)]
+    deciding = [c.verdict for c in claims if c.counted]
     return tuple((v, deciding.count(v)) for v in VERDICTS if v in deciding)
 
 
@@ -74,8 +79,8 @@ def answer(record: Record) -> str:
     claims = tuple(c for g in groups(record) for c in g.claims)
     parts = [f"{count} {verdict}" for verdict, count in counted(claims)]
     if not parts:
-        summaries = [record.document["sections"].get(key, {}).get("summary", "") for key in COLLECTIONS]
-        said = record.document.get("outcome", {}).get("sentence", "")
+        summaries = [collection.summary for _, _, collection in collections(record.sections)]
+        said = record.outcome.sentence if record.outcome is not None else ""
         return next((s for s in (*summaries, said) if s), "No claim was asked for.")
     total = sum(count for _, count in counted(claims))
     return f"{plural(total, 'claim')} asked: {', '.join(parts)}."
@@ -85,7 +90,7 @@ def verdict_chapter(record: Record) -> Chapter:
     """Cards, then the table."""
     found = groups(record)
     blocks: list[Block] = [Text(sentence) for sentence in _not_proved(found)]
-    cards = tuple(_card(case, record) for case in record.document["sections"].get("cases", ()))
+    cards = tuple(_card(case, record) for case in record.sections.cases)
     if cards:
         blocks.append(Cards(cards))
     others = tuple(c for g in found for _, c in g.entries(counted=False))
@@ -93,7 +98,7 @@ def verdict_chapter(record: Record) -> Chapter:
         blocks.append(Verdicts(found))
     if others:
         blocks.append(Verdicts(found, counted=False, summary=_others(others)))
-    blocks.extend(Text(note, "warning") for note in _warnings(record.document["sections"]))
+    blocks.extend(Text(note, "warning") for note in _warnings(record.sections))
     return Chapter("verdicts", "Verdicts", tuple(blocks))
 
 
@@ -103,53 +108,51 @@ def _not_proved(found: tuple[Group, ...]) -> Iterator[str]:
         by_title: dict[str, list[str]] = {}
         for group in found:
             for _, claim in group.entries(counted=True):
-                if claim["verdict"] == verdict:
-                    by_title.setdefault(short(claim["title"]), []).append(short(group.label))
+                if claim.verdict == verdict:
+                    by_title.setdefault(short(claim.title), []).append(short(group.label))
         if by_title:
             named = "; ".join(f"{title} ({', '.join(labels)})" for title, labels in by_title.items())
             yield f"{verdict}: {named}."
 
 
-def _others(claims: tuple[Mapping[str, Any], ...]) -> str:
+def _others(claims: tuple[ClaimEntry, ...]) -> str:
     """Say how the findings that do not decide the outcome came out."""
-    verdicts = [c["verdict"] for c in claims]
+    verdicts = [c.verdict for c in claims]
     parts = [f"{verdicts.count(v)} {v}" for v in VERDICTS if v in verdicts]
     return f"Also found, not counted in the outcome: {', '.join(parts)}"
 
 
-def _card(case: Mapping[str, Any], record: Record) -> Card:
-    numbers = [dict(q) | {"label": "certified floor of R"} for q in floors(case)][:1]
-    for run in case.get("runs", ())[:1]:
-        by_name = {q["name"]: q for q in run["metrics"]}
-        numbers += [
-            dict(by_name[name]) | {"label": label} for name, label in HEADLINE_NUMBERS if name in by_name
-        ]
-    numbers += _ratios(case["label"], record)
-    return Card(case["label"], counted(tuple(case.get("claims", ()))), tuple(numbers))
+def _card(case: CaseEntry, record: Record) -> Card:
+    numbers = [q.labelled("certified floor of R") for q in floors(case)][:1]
+    for run in case.runs[:1]:
+        by_name = {q.name: q for q in run.metrics}
+        numbers += [by_name[name].labelled(label) for name, label in HEADLINE_NUMBERS if name in by_name]
+    numbers += _ratios(case.label, record)
+    return Card(case.label, counted(case.claims), tuple(numbers))
 
 
-def _ratios(label: str, record: Record) -> list[dict[str, Any]]:
+def _ratios(label: str, record: Record) -> list[QuantityEntry]:
     """The law's peak over the least any controller needs, in the first norm compared."""
-    for table in record.document["sections"].get("comparison", {}).get("tables", ()):
-        for row in table["rows"]:
-            if row.get("law") == label and isinstance(row.get("ratio"), Mapping):
-                return [dict(row["ratio"]) | {"label": "peak over the least possible"}]
+    comparison = record.sections.comparison
+    for table in comparison.tables if comparison is not None else ():
+        for row in table.rows:
+            ratio = row.get("ratio")
+            if row.get("law") == label and isinstance(ratio, QuantityEntry):
+                return [ratio.labelled("peak over the least possible")]
     return []
 
 
-def floors(case: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+def floors(case: CaseEntry) -> list[QuantityEntry]:
     """Certified floors of R, from the certificates or, without any, from the claims."""
-    holders = [*case.get("certificates", ()), *case.get("claims", ())]
-    return [
-        q for holder in holders for q in holder["quantities"] if q["name"] in FLOORS and q.get("rigorous")
-    ]
+    held = [*(c.quantities for c in case.certificates), *(c.quantities for c in case.claims)]
+    return [q for quantities in held for q in quantities if q.name in FLOORS and q.rigorous]
 
 
-def _warnings(sections: Mapping[str, Any]) -> Iterator[str]:
-    for case in sections.get("cases", ()):
-        for run in case.get("runs", ()):
-            if run.get("saturated"):
-                where = f"{case['label']}, {run['label']}"
+def _warnings(sections: Sections) -> Iterator[str]:
+    for case in sections.cases:
+        for run in case.runs:
+            if run.saturated:
+                where = f"{case.label}, {run.label}"
                 yield f"{where}: the torque was limited; no claim covers a saturated run."
 
 

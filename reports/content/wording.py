@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Iterable
 
@@ -44,6 +45,11 @@ _PICTURES = str.maketrans(
     | {c: f"‹{name}›" for c, name in _BIDIRECTIONAL.items()}
     | dict.fromkeys([*map(chr, range(0x80, 0xA0)), *"\ufffe\uffff\u2028\u2029"], "\ufffd")
 )
+
+
+def json_text(value: object) -> str:
+    """Write a value of a record as JSON, text as it is."""
+    return value if isinstance(value, str) else json.dumps(value, sort_keys=True, ensure_ascii=False)
 
 
 def plural(count: int, word: str) -> str:

@@ -3,37 +3,19 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, final
+from typing import final
 
 import numpy as np
 
 from ..content.wording import short, slug
 from ..record import Array, Record
+from ..record.base import Part, unit_of
 from .matfile import mat_bytes
 
-UNITS = {
-    "time": "s",
-    "rate": "rad/s",
-    "error_rate": "rad/s",
-    "command": "N m",
-    "torque": "N m",
-    "momentum": "N m s",
-    "R": "s",
-    "k": "1/s",
-    "filter_floor": "s",
-    "angle_bound": "rad",
-    "rate_bound": "kg^1/2 m rad/s",
-    "speed_bound": "rad/s",
-    "storage": "kg m^2/s",
-    "storage_rate": "kg m^2/s^2",
-    "storage_bound": "kg m^2/s",
-    "storage_rate_bound": "kg m^2/s^2",
-    "torque_bound": "N m",
-    "gain_rate": "1/s",
-}
-"""Units of the roles that have one; the others are dimensionless or the law's own."""
+STATE_UNITS = {"R": "s", "k": "1/s"}
+"""Units of controller states that have one; the others are the law's own."""
 
 
 @final
@@ -58,41 +40,38 @@ def export_files(record: Record) -> dict[str, bytes]:
 
 def series_of(record: Record) -> Iterator[Series]:
     """Every group of arrays beside a time, in the record's order."""
-    sections = record.document["sections"]
-    if "schedule" in sections:
-        yield _series(record, "schedule", "schedule", sections["schedule"]["arrays"])
-    for i, case in enumerate(sections.get("cases", ())):
-        for j, run in enumerate(case.get("runs", ())):
-            name = f"run-{i + 1}-{j + 1}-{slug(case['label'], 0).removesuffix('-0')}"
-            yield _series(record, name, f"{case['label']}, {run['label']}", run["arrays"])
-        for j, certificate in enumerate(case.get("certificates", ())):
-            if "arrays" in certificate:
+    sections = record.sections
+    if sections.schedule is not None:
+        yield _series(record, "schedule", "schedule", sections.schedule.arrays)
+    for i, case in enumerate(sections.cases):
+        for j, run in enumerate(case.runs):
+            name = f"run-{i + 1}-{j + 1}-{slug(case.label, 0).removesuffix('-0')}"
+            yield _series(record, name, f"{case.label}, {run.label}", run.arrays)
+        for j, certificate in enumerate(case.certificates):
+            if certificate.arrays is not None:
                 name = f"certificate-{i + 1}-{j + 1}"
-                yield _series(record, name, f"{case['label']}, {certificate['label']}", certificate["arrays"])
-    for i, entry in enumerate(sections.get("optimum", ())):
-        if "arrays" in entry:
-            yield _series(record, f"optimum-{i + 1}-{entry['norm']}", entry["label"], entry["arrays"])
+                yield _series(record, name, f"{case.label}, {certificate.label}", certificate.arrays)
+    for i, entry in enumerate(sections.optimum):
+        if entry.arrays is not None:
+            yield _series(record, f"optimum-{i + 1}-{entry.norm}", entry.label, entry.arrays)
 
 
-def _series(record: Record, name: str, title: str, roles: Mapping[str, Any]) -> Series:
-    flat = {"time": roles["time"]}
-    for role, value in roles.items():
-        if isinstance(value, str):
-            if role not in {"time", "knots"}:
-                flat[role] = value
-        else:
-            flat |= dict(value)
+def _series(record: Record, name: str, title: str, arrays: Part) -> Series:
+    held = arrays.array_names()
+    roles = ["time", *(role for role in held if role != "time")]
     columns: list[tuple[str, str, Array]] = []
     taken: set[str] = set()
-    for role, array_name in flat.items():
-        values = record.array(array_name)
+    for role in roles:
+        values = record.array(held[role])
+        field, _, state = role.partition(".")
+        unit = STATE_UNITS.get(state, "") if state else unit_of(type(arrays), field)
         table = values.reshape(len(values), -1)
         for k in range(table.shape[1]):
-            column = _identifier(role) + (f"_{k}" if table.shape[1] > 1 else "")
+            column = _identifier(state or field) + (f"_{k}" if table.shape[1] > 1 else "")
             while column in taken:
                 column += "_"
             taken.add(column)
-            columns.append((column, UNITS.get(role, ""), table[:, k]))
+            columns.append((column, unit, table[:, k]))
     return Series(name, title, tuple(columns))
 
 

@@ -12,14 +12,15 @@ from typing import Any
 
 from markupsafe import Markup
 
-from ..content.blocks import Cell, Chapter, Chart, Replay, charts_of
+from ..content.blocks import Cell, Chapter, Chart, MatrixCell, Replay, charts_of
 from ..content.budget import thin
 from ..content.heading import Heading
 from ..content.typeset import equation_svgs
 from ..content.verdicts import claim_numbers, refutation
-from ..content.wording import MAX_LABEL, short, visible
+from ..content.wording import MAX_LABEL, json_text, short, visible
 from ..numbers import number, unit_text, write
-from ..record.values import thaw
+from ..record.claims import QuantityEntry, WitnessEntry
+from ..record.tables import CodeCell, VerdictCell
 from .plotly import figure
 from .replay import replay_data
 
@@ -99,7 +100,8 @@ def _environment() -> Any:
         kind=lambda block: type(block).__name__,
         svgs=lambda block: [Markup(s) for s in equation_svgs(block.equations)],
         witness=witness_rows,
-        detail=detail_text,
+        detail=json_text,
+        badge=verdict_badge,
     )
     return environment
 
@@ -110,7 +112,7 @@ def cut_names(chart: Chart) -> tuple[str, ...]:
     return tuple(dict.fromkeys(n for n in (*names, chart.x.label, chart.y.label) if len(n) > MAX_LABEL))
 
 
-def html_number(quantity: Mapping[str, Any], *, unit: bool = True) -> Markup:
+def html_number(quantity: QuantityEntry, *, unit: bool = True) -> Markup:
     """Set a quantity: bounds and enclosures are marked as rigorous."""
     written = write(quantity, unit=unit)
     kind = "rigorous" if written.rigorous and not written.missing else "figure"
@@ -124,25 +126,24 @@ def html_cell(cell: Cell, column_unit: str = "") -> Markup:
         return Markup('<span class="missing">–</span>')
     if isinstance(cell, str):
         return Markup("<bdi>{}</bdi>").format(visible(cell))
-    if "verdict" in cell:
-        more = Markup(" <bdi>{}</bdi>").format(visible(cell["text"])) if cell.get("text") else Markup("")
-        return verdict_badge(cell["verdict"]) + more
-    if "code" in cell:
-        return Markup("<code><bdi>{}</bdi></code>").format(visible(cell["code"]))
-    if "matrix" in cell:
+    if isinstance(cell, VerdictCell):
+        return verdict_badge(cell.verdict)
+    if isinstance(cell, CodeCell):
+        return Markup("<code><bdi>{}</bdi></code>").format(visible(cell.code))
+    if isinstance(cell, MatrixCell):
         return _matrix(cell)
-    return html_number(cell, unit=not column_unit or column_unit != cell.get("unit"))
+    return html_number(cell, unit=not column_unit or column_unit != cell.unit)
 
 
-def _matrix(cell: Mapping[str, Any]) -> Markup:
+def _matrix(cell: MatrixCell) -> Markup:
     rows = Markup("").join(
         Markup("<tr>{}</tr>").format(
             Markup("").join(Markup("<td>{}</td>").format(number(x, 12)) for x in row)
         )
-        for row in cell["matrix"]
+        for row in cell.matrix
     )
     return Markup('<table class="matrix"><tbody>{}</tbody></table> {}').format(
-        rows, visible(unit_text(cell["unit"]))
+        rows, visible(unit_text(cell.unit))
     )
 
 
@@ -154,13 +155,8 @@ def verdict_badge(verdict: str) -> Markup:
     )
 
 
-def witness_rows(witness: Mapping[str, Any]) -> list[tuple[str, str]]:
+def witness_rows(witness: WitnessEntry) -> list[tuple[str, str]]:
     """List a witness's values in full precision."""
     from ..content.studies import values_text
 
-    return [(key, values_text(value)) for key, value in sorted(witness["values"].items())]
-
-
-def detail_text(value: Any) -> str:
-    """Write one detail of a piece of evidence as JSON, text as it is."""
-    return value if isinstance(value, str) else json.dumps(thaw(value), sort_keys=True, ensure_ascii=False)
+    return [(key, values_text(value)) for key, value in sorted(witness.values.items())]

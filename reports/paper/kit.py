@@ -12,16 +12,22 @@ from ..content.blocks import (
     Equations,
     Facts,
     Group,
+    MatrixCell,
     Table,
     Verdicts,
     charts_of,
+    code,
+    law_row,
     tables_of,
 )
+from ..content.cells import cell_text
 from ..content.figures import LEGEND_LONGEST
 from ..content.heading import Heading
 from ..content.names import FullNames
 from ..content.verdicts import claim_numbers
 from ..content.wording import shares
+from ..record.claims import QuantityEntry
+from ..record.tables import CodeCell, VerdictCell
 from .latex import cell, text, unit
 from .pgfplots import plots
 
@@ -84,18 +90,16 @@ def booktabs(table: Table, names: FullNames) -> str:
 
 def _length(value: Cell) -> int:
     """Characters a cell would like to have side by side; a number has about ten."""
-    if isinstance(value, Mapping) and not {"code", "text", "verdict"} & set(value):
+    if isinstance(value, (QuantityEntry, MatrixCell)):
         return 10
-    return len(value if isinstance(value, str) else "".join(map(str, (value or {}).values())))
+    return len(cell_text(value) if value is not None else "")
 
 
 def _cut(value: Cell, names: FullNames) -> Cell:
     """Mark a long text: a tabular cannot break over pages."""
     if isinstance(value, str):
         return names.brief(value, NARROW)
-    if isinstance(value, Mapping):
-        return {k: names.brief(v, NARROW) if k in {"text", "code"} else v for k, v in value.items()}
-    return value
+    return code(names.brief(value.code, NARROW)) if isinstance(value, CodeCell) else value
 
 
 def tabular(columns: str, heads: list[str], rows: list[list[str]], notes: tuple[str, ...] = ()) -> str:
@@ -121,8 +125,8 @@ def verdict_table(chapters: tuple[Chapter, ...], names: FullNames) -> str:
     for group in groups:
         for _, claim in (*group.entries(counted=True), *group.entries(counted=False)):
             margins = "; ".join(cell(q) for q in claim_numbers(claim)) or "--"
-            verdict = cell({"verdict": claim["verdict"]})
-            of, title = (text(names.brief(x, NARROW)) for x in (group.label, claim["title"]))
+            verdict = cell(VerdictCell(verdict=claim.verdict))
+            of, title = (text(names.brief(x, NARROW)) for x in (group.label, claim.title))
             rows.append([of, title, verdict, margins])
     widths = ("0.24", "0.33", "0.16", "0.19")
     columns = "".join(rf"p{{{w}\linewidth}}" for w in widths)
@@ -134,13 +138,11 @@ def _laws(chapters: tuple[Chapter, ...], full: FullNames) -> dict[str, str]:
     for chapter in chapters:
         for block in chapter.blocks:
             cards = block.cards if isinstance(block, Cards) else cards
-    names = {
-        q["name"]: (q.get("label") or q["name"], q.get("unit", "")) for card in cards for q in card.numbers
-    }
+    names = {q.name: (q.words, q.unit) for card in cards for q in card.numbers}
     if not names:
         return {}
     columns = (("law", "Law", ""), *((name, label, u) for name, (label, u) in names.items()))
-    rows = tuple({"law": card.label} | {q["name"]: q for q in card.numbers} for card in cards)
+    rows = tuple(law_row(card.label, card.numbers) for card in cards)
     return {"laws": booktabs(Table("laws", "Laws", columns, rows), full)}
 
 

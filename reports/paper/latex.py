@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from unicodedata import normalize
 
-from ..content.blocks import Cell
+from ..content.blocks import Cell, MatrixCell
 from ..content.wording import visible
 from ..numbers import ROOT, number, write
+from ..record.claims import QuantityEntry
+from ..record.tables import CodeCell, VerdictCell
 from .letters import PAIRS, letter
 
 SPECIAL = {
@@ -117,7 +118,7 @@ def unit(name: str) -> str:
     return rf"\mathrm{{{out}}}"
 
 
-def quantity(value: Mapping[str, object], *, with_unit: bool = True) -> str:
+def quantity(value: QuantityEntry, *, with_unit: bool = True) -> str:
     """Set a quantity in maths, with the digits it deserves and no more."""
     written = write(value, unit=with_unit)
     if written.missing:
@@ -135,12 +136,11 @@ def cell(value: Cell, column_unit: str = "") -> str:
         return "--"
     if isinstance(value, str):
         return text(value)
-    if "verdict" in value:
-        more = value.get("text", "")
-        return rf"\textsc{{{value['verdict'].lower()}}}" + (f" {text(more)}" if more else "")
-    if "code" in value:
-        return rf"\texttt{{{text(value['code'])}}}"
-    if "matrix" in value:
-        rows = r" \\ ".join(" & ".join(number(x, 12) for x in row) for row in value["matrix"])
-        return rf"$\begin{{bmatrix}} {rows} \end{{bmatrix}}\,{unit(value['unit'])}$"
-    return quantity(value, with_unit=not column_unit or column_unit != value.get("unit"))
+    if isinstance(value, VerdictCell):
+        return rf"\textsc{{{value.verdict.lower()}}}"
+    if isinstance(value, CodeCell):
+        return rf"\texttt{{{text(value.code)}}}"
+    if isinstance(value, MatrixCell):
+        rows = r" \\ ".join(" & ".join(number(x, 12) for x in row) for row in value.matrix)
+        return rf"$\begin{{bmatrix}} {rows} \end{{bmatrix}}\,{unit(value.unit)}$"
+    return quantity(value, with_unit=not column_unit or column_unit != value.unit)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from functools import singledispatch
 from typing import Any
@@ -15,6 +14,7 @@ from ..content.blocks import (
     ClaimDetails,
     Equations,
     Facts,
+    MatrixCell,
     Replay,
     Table,
     Text,
@@ -26,9 +26,10 @@ from ..content.figures import LEGEND_LONGEST
 from ..content.names import LONGEST, FullNames
 from ..content.studies import values_text
 from ..content.verdicts import claim_numbers, refutation
-from ..content.wording import shares, short
+from ..content.wording import json_text, shares, short
 from ..numbers import number, unit_text, write
-from ..record.values import thaw
+from ..record.claims import ClaimEntry, QuantityEntry
+from ..record.tables import CodeCell, VerdictCell
 
 BREAK_EVERY = 16
 """Characters of an unbroken word after which a line may break."""
@@ -62,16 +63,16 @@ def cell(value: Cell, column_unit: str = "") -> dict[str, Any]:
         return {"text": "–"}
     if isinstance(value, str):
         return {"text": words(value)}
-    if "verdict" in value:
-        return {"verdict": value["verdict"], "text": words(value.get("text", ""))}
-    if "code" in value:
-        return {"code": words(value["code"])}
-    if "matrix" in value:
+    if isinstance(value, VerdictCell):
+        return {"verdict": value.verdict, "text": ""}
+    if isinstance(value, CodeCell):
+        return {"code": words(value.code)}
+    if isinstance(value, MatrixCell):
         return {
-            "matrix": [[number(x, 12) for x in row] for row in value["matrix"]],
-            "text": words(unit_text(value["unit"])),
+            "matrix": [[number(x, 12) for x in row] for row in value.matrix],
+            "text": words(unit_text(value.unit)),
         }
-    written = write(value, unit=not column_unit or column_unit != value.get("unit"))
+    written = write(value, unit=not column_unit or column_unit != value.unit)
     return {
         "text": words(written.text.replace(" ", "\u00a0")),
         "rigorous": written.rigorous and not written.missing,
@@ -97,12 +98,10 @@ def _(block: Text, names: FullNames) -> dict[str, Any]:
 
 @spoken.register
 def _(block: Cards, names: FullNames) -> dict[str, Any]:
-    labels = {
-        q["name"]: words(names.brief(q.get("label") or q["name"])) for c in block.cards for q in c.numbers
-    }
+    labels = {q.name: words(names.brief(q.words)) for c in block.cards for q in c.numbers}
     rows = []
     for card in block.cards:
-        held = {q["name"]: cell(q) for q in card.numbers}
+        held = {q.name: cell(q) for q in card.numbers}
         counts = ", ".join(f"{n} {v}" for v, n in card.verdicts)
         cells = [held.get(n, {"text": "–"}) for n in labels]
         rows.append({"label": words(names.brief(card.label)), "counts": counts, "cells": cells})
@@ -119,22 +118,22 @@ def _(block: Verdicts, names: FullNames) -> dict[str, Any]:
     return {"summary": words(block.summary), "kind": "verdicts", "groups": groups}
 
 
-def _claim(claim: Mapping[str, Any], names: FullNames) -> dict[str, Any]:
+def _claim(claim: ClaimEntry, names: FullNames) -> dict[str, Any]:
     def brief(text: str) -> str:
         return words(names.brief(text))
 
-    why = claim.get("reason", "") if claim["verdict"] == "UNDECIDED" else ""
-    if claim.get("witness"):
+    why = claim.reason if claim.verdict == "UNDECIDED" else ""
+    if claim.witness is not None:
         why = f"refuted: {refutation(claim)}"
     return {
-        "title": brief(claim["title"]),
-        "statement": brief(claim["statement"]),
-        "verdict": claim["verdict"],
-        "margins": [[brief(q.get("label") or q["name"]), cell(q)] for q in claim_numbers(claim)],
-        "evidence": [[e["kind"], brief(e["summary"])] for e in claim["evidence"]],
+        "title": brief(claim.title),
+        "statement": brief(claim.statement),
+        "verdict": claim.verdict,
+        "margins": [[brief(q.words), cell(q)] for q in claim_numbers(claim)],
+        "evidence": [[e.kind, brief(e.summary)] for e in claim.evidence],
         "why": brief(why),
-        "recheck": brief(claim.get("recheck", "")),
-        "source": brief(claim.get("source", "")),
+        "recheck": brief(claim.recheck or ""),
+        "source": brief(claim.source),
     }
 
 
@@ -147,41 +146,39 @@ def _(block: ClaimDetails, names: FullNames) -> dict[str, Any]:
     return {"kind": "details", "groups": groups}
 
 
-def _details(claim: Mapping[str, Any], names: FullNames) -> dict[str, Any]:
-    rows: list[tuple[str, dict[str, Any]]] = [("Key", {"code": words(claim["key"])})]
-    rows += [(_label(q, names), cell(q)) for q in claim["quantities"]]
-    rows += [("Margin: " + _label(q, names), cell(q)) for q in claim["margins"]]
-    for e in claim["evidence"]:
-        source = f" ({e['source']})" if e.get("source") else ""
-        rows.append((f"Evidence: {e['kind']}", {"text": words(e["summary"] + source)}))
+def _details(claim: ClaimEntry, names: FullNames) -> dict[str, Any]:
+    rows: list[tuple[str, dict[str, Any]]] = [("Key", {"code": words(claim.key)})]
+    rows += [(_label(q, names), cell(q)) for q in claim.quantities]
+    rows += [("Margin: " + _label(q, names), cell(q)) for q in claim.margins]
+    for e in claim.evidence:
+        source = f" ({e.source})" if e.source else ""
+        rows.append((f"Evidence: {e.kind}", {"text": words(e.summary + source)}))
         rows += [
-            ("  " + words(names.brief(k)), {"code": words(_json(v))})
-            for k, v in sorted(e.get("details", {}).items())
+            ("  " + words(names.brief(k)), {"code": words(json_text(v))})
+            for k, v in sorted(e.details.items())
         ]
-    if claim.get("witness"):
-        witness = claim["witness"]
-        rows.append(("Witness", {"text": words(witness["description"])}))
+    if claim.witness is not None:
+        witness = claim.witness
+        rows.append(("Witness", {"text": words(witness.description)}))
         rows += [
             ("  " + words(names.brief(k)), {"code": words(values_text(v))})
-            for k, v in sorted(witness["values"].items())
+            for k, v in sorted(witness.values.items())
         ]
-        rows.append(("  " + _label(witness["violation"], names, "violation"), cell(witness["violation"])))
-    named = (("reason", "Why"), ("next_step", "Next step"), ("source", "Source"), ("recheck", "Check again"))
-    rows += [(label, {"text": words(claim[key])}) for key, label in named if claim.get(key)]
+        rows.append(("  " + _label(witness.violation, names, "violation"), cell(witness.violation)))
+    said = (("Why", claim.reason), ("Next step", claim.next_step), ("Source", claim.source))
+    rows += [
+        (label, {"text": words(text)}) for label, text in (*said, ("Check again", claim.recheck)) if text
+    ]
     return {
-        "title": words(names.brief(claim["title"])),
-        "verdict": claim["verdict"],
-        "statement": words(names.within(claim["statement"])),
+        "title": words(names.brief(claim.title)),
+        "verdict": claim.verdict,
+        "statement": words(names.within(claim.statement)),
         "rows": rows,
     }
 
 
-def _label(quantity: Mapping[str, Any], names: FullNames, otherwise: str = "") -> str:
-    return words(names.brief(quantity.get("label") or otherwise or quantity["name"]))
-
-
-def _json(value: Any) -> str:
-    return value if isinstance(value, str) else json.dumps(thaw(value), sort_keys=True, ensure_ascii=False)
+def _label(quantity: QuantityEntry, names: FullNames, otherwise: str = "") -> str:
+    return words(names.brief(quantity.label or otherwise or quantity.name))
 
 
 @spoken.register
@@ -217,10 +214,8 @@ def _table_cell(value: Cell, unit: str, names: FullNames) -> dict[str, Any]:
     """Set a cell of a narrow column: a long text is marked."""
     if isinstance(value, str):
         return {"text": words(names.brief(value))}
-    if isinstance(value, Mapping) and "code" in value:
-        return {"code": words(names.brief(value["code"]))}
-    if isinstance(value, Mapping) and "verdict" in value:
-        return {"verdict": value["verdict"], "text": words(names.brief(value.get("text", "")))}
+    if isinstance(value, CodeCell):
+        return {"code": words(names.brief(value.code))}
     return cell(value, unit)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Self, final
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, GetJsonSchemaHandler, Strict
+from pydantic import BaseModel, BeforeValidator, ConfigDict, GetJsonSchemaHandler, Strict, model_validator
 from pydantic_core import CoreSchema
 
 Integer = Annotated[int, Strict()]
@@ -64,6 +64,12 @@ class Part(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=True)
 
+    @model_validator(mode="before")
+    @classmethod
+    def _in_unicode(cls, data: Any) -> Any:
+        """Text in names of files may hold what Unicode does not; each such character is a "?"."""
+        return {key: well_formed(value) for key, value in data.items()} if isinstance(data, dict) else data
+
     def given(self) -> dict[str, Any]:
         """The fields to be written, by name, in alphabetical order."""
         fields = type(self).model_fields
@@ -75,14 +81,30 @@ class Part(BaseModel):
         return self.model_copy(update=changes)
 
     def array_names(self) -> dict[str, str]:
-        """The arrays that fields of this part name, by role; parts inside it are asked themselves."""
+        """The arrays that fields of this part name, by role ("field" or "field.key"), in order of the roles.
+
+        Parts inside it are asked themselves.
+        """
         found: dict[str, str] = {}
-        for field, info in type(self).model_fields.items():
+        for field, info in sorted(type(self).model_fields.items()):
             value = getattr(self, field)
             if value is None or not any(isinstance(m, ArrayOf) for m in info.metadata):
                 continue
-            found |= {field: value} if isinstance(value, str) else dict(value)
+            if isinstance(value, str):
+                found[field] = value
+            else:
+                found |= {f"{field}.{key}": value[key] for key in sorted(value)}
         return found
+
+
+def well_formed(value: Any) -> Any:
+    """Text, or a list of texts, with each lone surrogate replaced by a question mark; others as they are."""
+    if isinstance(value, str):
+        lone = any("\ud800" <= c <= "\udfff" for c in value)
+        return value.encode("utf-8", "replace").decode("utf-8") if lone else value
+    if isinstance(value, (list, tuple)):
+        return tuple(well_formed(v) for v in value)
+    return value
 
 
 def unit_of(part: type[Part], field: str) -> str:

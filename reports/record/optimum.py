@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated
+
+from pydantic import Field
 
 from .base import ArrayOf, Integer, Number, Part, Unit
 from .claims import QuantityEntry
@@ -35,17 +37,17 @@ class OptimumEntry(Part):
 
     key: str
     label: str
-    norm: Literal["component", "euclidean", "thrusters"]
+    norm: Annotated[str, Field(description="its key: component, euclidean or thrusters")]
     value: QuantityEntry
     profile: str = ""
     terminal: str = ""
     final_time: QuantityEntry | None = None
     bound: QuantityEntry | None = None
     bound_name: str | None = None
-    other_bounds: tuple[QuantityEntry, ...] = ()
+    other_bounds: tuple[QuantityEntry, ...] | None = None
     gap: QuantityEntry | None = None
     arrays: OptimumArrays | None = None
-    switch_times: Annotated[tuple[Number, ...], Unit("s")] = ()
+    switch_times: Annotated[tuple[Number, ...] | None, Unit("s")] = None
     residuals: tuple[QuantityEntry, ...] = ()
     local_optima: LocalOptima | None = None
     effort: tuple[EffortEntry, ...] = ()

@@ -99,6 +99,11 @@ class Record:
         """What was found, section by section."""
         return self.content.sections
 
+    @property
+    def outcome(self) -> Outcome | None:
+        """What the study came to; None for a part of a study."""
+        return self.content.outcome
+
     @cached_property
     def document(self) -> Mapping[str, Any]:
         """The document as JSON values, read-only: mappings, tuples, text, numbers."""

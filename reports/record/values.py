@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from .base import Part
+from .base import Part, well_formed
 
 
 def plain(value: Any, where: str = "record") -> Any:
@@ -34,7 +34,7 @@ def plain(value: Any, where: str = "record") -> Any:
     if isinstance(value, Enum):
         return plain(value.value, where)
     if isinstance(value, str):
-        return value.encode("utf-8", "replace").decode("utf-8") if _has_surrogate(value) else str(value)
+        return str(well_formed(value))
     if isinstance(value, (int, np.integer)):
         return int(value)
     if isinstance(value, (float, np.floating)):
@@ -55,10 +55,6 @@ def plain(value: Any, where: str = "record") -> Any:
     raise ValueError(
         f"{where}: a record cannot hold a {type(value).__name__}; use numbers, text, lists or mappings"
     )
-
-
-def _has_surrogate(text: str) -> bool:
-    return any("\ud800" <= c <= "\udfff" for c in text)
 
 
 def _number(value: float, where: str) -> float | str:

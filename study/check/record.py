@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 
@@ -13,6 +11,20 @@ from ...models.types import Array
 from ...reports import parts
 from ...reports.provenance import provenance
 from ...reports.record import Record
+from ...reports.record.base import unit_of
+from ...reports.record.claims import QuantityEntry
+from ...reports.record.document import Outcome, Provenance, Sections
+from ...reports.record.problem import FactEntry, ScenarioEntry, ScheduleArrays, ScheduleEntry, TolerancesEntry
+from ...reports.record.runs import (
+    BoundArrays,
+    CaseEntry,
+    CertificateEntry,
+    EffortEntry,
+    EquationEntry,
+    HistogramEntry,
+    RunEntry,
+    SamplesEntry,
+)
 from ...scenario import LawChoice, Scenario
 from ...scenario.laws import law_class
 from ...verify.sampling import SampledDerivative
@@ -35,25 +47,25 @@ def check_record(study: CheckStudy, *, date: str = "", author: str = "", command
         provenance=check_provenance(study, date=date, author=author, command=command),
         sections=sections,
         arrays=arrays,
-        outcome={"exit_code": study.exit_code, "sentence": study.sentence},
+        outcome=Outcome(exit_code=study.exit_code, sentence=study.sentence),
     )
 
 
-def check_provenance(
-    study: CheckStudy, *, date: str = "", author: str = "", command: str = ""
-) -> dict[str, Any]:
+def check_provenance(study: CheckStudy, *, date: str = "", author: str = "", command: str = "") -> Provenance:
     """Scenario, versions, seeds, options and counted effort."""
     scenario = study.scenario
     effort = [
-        {"label": f"right-hand sides, {case.choice.label}", "count": int(case.run.trajectory.evaluations)}
+        EffortEntry(
+            label=f"right-hand sides, {case.choice.label}", count=int(case.run.trajectory.evaluations)
+        )
         for case in study.cases
         if case.run is not None and case.run.trajectory is not None
     ]
     effort += [
-        {
-            "label": f"gradient evaluations, {case.choice.label}",
-            "count": case.findings.samples.samples.search_evaluations,
-        }
+        EffortEntry(
+            label=f"gradient evaluations, {case.choice.label}",
+            count=case.findings.samples.samples.search_evaluations,
+        )
         for case in study.cases
         if case.findings.samples is not None
     ]
@@ -67,37 +79,40 @@ def check_provenance(
         options={"samples": scenario.check.samples, "claims": list(scenario.check.claims or ())},
         effort=effort,
     )
-    return found | {"input_sha256": scenario.sha256}
+    return found.but(input_sha256=scenario.sha256)
 
 
-def check_sections(study: CheckStudy) -> tuple[dict[str, Any], dict[str, Array]]:
+def check_sections(study: CheckStudy) -> tuple[Sections, dict[str, Array]]:
     """Sections `scenario`, `schedule`, `cases` and `samples`, and the arrays they name."""
     arrays: dict[str, Array] = {}
-    cases, samples = [], []
+    cases: list[CaseEntry] = []
+    samples: list[SamplesEntry] = []
     for number, case in enumerate(study.cases, start=1):
         entry, held = case_entry(study.scenario, case, f"law{number}")
         cases.append(entry)
         arrays |= held
         if case.findings.samples is not None:
-            entry, held = samples_entry(case.findings.samples, case.choice.label, f"law{number}")
-            samples.append(entry)
+            sampled, held = samples_entry(case.findings.samples, case.choice.label, f"law{number}")
+            samples.append(sampled)
             arrays |= held
     schedule, held = schedule_entry(study)
-    sections: dict[str, Any] = {
-        "scenario": scenario_entry(study.scenario),
-        "schedule": schedule,
-        "cases": cases,
-        "samples": samples,
-    }
+    sections = Sections(
+        scenario=scenario_entry(study.scenario),
+        schedule=schedule,
+        cases=tuple(cases),
+        samples=tuple(samples),
+    )
     return sections, arrays | held
 
 
-def scenario_entry(scenario: Scenario) -> dict[str, Any]:
+def scenario_entry(scenario: Scenario) -> ScenarioEntry:
     """What was asked, in facts."""
     state, bounds = scenario.initial, scenario.initial_set
     tolerance = scenario.tolerance
     facts = [
-        {"label": "inertia", "matrix": scenario.body.inertia.tolist(), "unit": "kg m^2"},
+        FactEntry(
+            label="inertia", matrix=scenario.body.inertia.tolist(), unit=unit_of(ScenarioEntry, "inertia")
+        ),
         _fact("initial error angle", parts.quantity("angle", float(f"{state.angle_deg:.10g}"), unit="deg")),
         _fact("initial rate", text=f"({', '.join(f'{float(x):g}' for x in state.exact_rate)}) rad/s"),
         _fact("largest error angle of the set", _exact("max_angle", bounds.max_angle_deg, "deg")),
@@ -117,21 +132,18 @@ def scenario_entry(scenario: Scenario) -> dict[str, Any]:
         facts.append(_fact(f"torque limit ({scenario.limits.norm})", quantity))
     if scenario.spacecraft_name:
         facts.insert(0, _fact("spacecraft", text=scenario.spacecraft_name))
-    return {
-        "name": scenario.name,
-        "description": scenario.description,
-        "facts": facts,
-        "inertia": scenario.body.inertia.tolist(),
-        "horizon": float(scenario.horizon),
-        "tolerances": {
-            "attitude": float(scenario.tolerance.attitude),
-            "rate": float(scenario.tolerance.rate),
-        },
-        "notes": list(scenario.warnings),
-    }
+    return ScenarioEntry(
+        name=scenario.name,
+        description=scenario.description,
+        facts=tuple(facts),
+        inertia=scenario.body.inertia.tolist(),
+        horizon=float(scenario.horizon),
+        tolerances=TolerancesEntry(attitude=float(tolerance.attitude), rate=float(tolerance.rate)),
+        notes=tuple(scenario.warnings),
+    )
 
 
-def schedule_entry(study: CheckStudy) -> tuple[dict[str, Any], dict[str, Array]]:
+def schedule_entry(study: CheckStudy) -> tuple[ScheduleEntry, dict[str, Array]]:
     """Windows over the horizon, g on a fine grid of it, and the claims about the schedule."""
     scenario, schedule = study.scenario, study.scenario.schedule
     windows = list(schedule.windows_between(Fraction(0), scenario.horizon))
@@ -144,13 +156,13 @@ def schedule_entry(study: CheckStudy) -> tuple[dict[str, Any], dict[str, Array]]
     notes = [f"Source: {scenario.schedule_choice.source}."]
     if len(windows) > SHOWN_WINDOWS:
         notes.append(f"The first {SHOWN_WINDOWS} of {len(windows)} windows are listed.")
-    entry = {
-        "extends": "periodic" if schedule.is_periodic else "finite",
-        "windows": [[float(w.on), float(w.off)] for w in windows[:SHOWN_WINDOWS]],
-        "arrays": {name.removeprefix("schedule."): name for name in arrays},
-        "claims": claim_entries(study.claims, recheck=f"intermit check {scenario.path.name}"),
-        "notes": notes,
-    }
+    entry = ScheduleEntry(
+        extends="periodic" if schedule.is_periodic else "finite",
+        windows=tuple((float(w.on), float(w.off)) for w in windows[:SHOWN_WINDOWS]),
+        arrays=ScheduleArrays(time="schedule.time", gain="schedule.gain", gain_rate="schedule.gain_rate"),
+        claims=claim_entries(study.claims, recheck=f"intermit check {scenario.path.name}"),
+        notes=tuple(notes),
+    )
     return entry, arrays
 
 
@@ -166,9 +178,9 @@ def gain_times(schedule: Schedule, horizon: Fraction, per_piece: int = 24) -> Ar
     return np.unique(np.clip(times, 0.0, float(horizon)))
 
 
-def case_entry(scenario: Scenario, case: Case, key: str) -> tuple[dict[str, Any], dict[str, Array]]:
+def case_entry(scenario: Scenario, case: Case, key: str) -> tuple[CaseEntry, dict[str, Array]]:
     """One law: parameters, claims and its run."""
-    runs: list[dict[str, Any]] = []
+    runs: list[RunEntry] = []
     arrays: dict[str, Array] = {}
     notes = list(case.findings.notes)
     if case.run is not None and case.run.trajectory is not None:
@@ -190,76 +202,80 @@ def case_entry(scenario: Scenario, case: Case, key: str) -> tuple[dict[str, Any]
         arrays |= {f"{name}.{role}": values for role, values in vars(curves).items()}
         floor = next(claim for claim in case.claims if claim.key == "filter.floor")
         certificates.append(
-            {
-                "key": name,
-                "label": f"certified bounds, {case.choice.label}",
-                "claim": floor.statement,
-                "quantities": [quantity_entry(q) for q in floor.quantities],
-                "arrays": {role: f"{name}.{role}" for role in vars(curves)},
-                "recheck": f"intermit check {scenario.path.name}",
-                "notes": ["Each value holds from its time to the next."],
-            }
+            CertificateEntry(
+                key=name,
+                label=f"certified bounds, {case.choice.label}",
+                claim=floor.statement,
+                quantities=tuple(quantity_entry(q) for q in floor.quantities),
+                arrays=BoundArrays(
+                    time=f"{name}.time",
+                    filter_floor=f"{name}.filter_floor",
+                    angle_bound=f"{name}.angle_bound",
+                    rate_bound=f"{name}.rate_bound",
+                    speed_bound=f"{name}.speed_bound",
+                    torque_bound=f"{name}.torque_bound",
+                ),
+                recheck=f"intermit check {scenario.path.name}",
+                notes=("Each value holds from its time to the next.",),
+            )
         )
-    return {
-        "key": key,
-        "label": case.choice.label,
-        "law": case.choice.type,
-        "parameters": parameter_entries(case.choice),
-        "equations": equation_entries(case.choice),
-        "claims": claim_entries(case.claims, recheck=f"intermit check {scenario.path.name}"),
-        "runs": runs,
-        "certificates": certificates,
-        "notes": notes,
-    }, arrays
+    return CaseEntry(
+        key=key,
+        label=case.choice.label,
+        law=case.choice.type,
+        parameters=parameter_entries(case.choice),
+        equations=equation_entries(case.choice),
+        claims=claim_entries(case.claims, recheck=f"intermit check {scenario.path.name}"),
+        runs=tuple(runs),
+        certificates=tuple(certificates),
+        notes=tuple(notes),
+    ), arrays
 
 
-def parameter_entries(choice: LawChoice) -> list[dict[str, Any]]:
+def parameter_entries(choice: LawChoice) -> tuple[QuantityEntry, ...]:
     """Parameters of a law as exact quantities, with the units that the law states."""
     known = choice.described()
     units = {name: known[name].unit for name, _ in choice.parameters if name in known}
-    return [_exact(name, value, units.get(name, "")) for name, value in choice.parameters]
+    return tuple(_exact(name, value, units.get(name, "")) for name, value in choice.parameters)
 
 
-def equation_entries(choice: LawChoice) -> list[dict[str, str]]:
+def equation_entries(choice: LawChoice) -> tuple[EquationEntry, ...]:
     """Equations that the law states of itself, for the report to set."""
-    return [{"title": e.title, "typst": e.typst, "latex": e.latex} for e in law_class(choice).equations]
+    stated = law_class(choice).equations
+    return tuple(EquationEntry(title=e.title, typst=e.typst, latex=e.latex) for e in stated)
 
 
-def samples_entry(
-    sampled: SampledDerivative, label: str, case: str
-) -> tuple[dict[str, Any], dict[str, Array]]:
+def samples_entry(sampled: SampledDerivative, label: str, case: str) -> tuple[SamplesEntry, dict[str, Array]]:
     """The sampled derivative of V: its count, domain, worst state and histogram."""
     samples = sampled.samples
     key = f"{case}.samples"
     arrays = {f"{key}.edges": samples.edges, f"{key}.counts": samples.counts}
-    entry: dict[str, Any] = {
-        "key": key,
-        "label": f"-V'/W, {label}",
-        "case": case,
-        "count": samples.sampling.count,
-        "seed": samples.sampling.seed,
-        "coverage": samples.domain.describe(),
-        "statement": sampled.sign.summary,
-        "histogram": {
-            "edges": f"{key}.edges",
-            "counts": f"{key}.counts",
-            "label": "-V'/W (the end bins hold what lies beyond)",
-            "unit": "1/s",
-        },
-        "margins": [
-            parts.figure_of(
-                "least_sampled", samples.sampled_worst, digits=4, unit="1/s", label="least -V'/W sampled"
-            )
-        ],
-    }
-    if sampled.sign_witness is not None:
-        entry["worst"] = witness_entry(sampled.sign_witness)
+    least = parts.figure_of(
+        "least_sampled", samples.sampled_worst, digits=4, unit="1/s", label="least -V'/W sampled"
+    )
+    entry = SamplesEntry(
+        key=key,
+        label=f"-V'/W, {label}",
+        case=case,
+        count=samples.sampling.count,
+        seed=samples.sampling.seed,
+        coverage=samples.domain.describe(),
+        statement=sampled.sign.summary,
+        histogram=HistogramEntry(
+            edges=f"{key}.edges",
+            counts=f"{key}.counts",
+            label="-V'/W (the end bins hold what lies beyond)",
+            unit="1/s",
+        ),
+        worst=None if sampled.sign_witness is None else witness_entry(sampled.sign_witness),
+        margins=(least,),
+    )
     return entry, arrays
 
 
-def _exact(name: str, value: Fraction, unit: str) -> dict[str, Any]:
+def _exact(name: str, value: Fraction, unit: str) -> QuantityEntry:
     return parts.quantity(name, float(value), unit=unit)
 
 
-def _fact(label: str, quantity: Mapping[str, Any] | None = None, *, text: str = "") -> dict[str, Any]:
-    return {"label": label} | ({"quantity": dict(quantity)} if quantity is not None else {"text": text})
+def _fact(label: str, quantity: QuantityEntry | None = None, *, text: str | None = None) -> FactEntry:
+    return FactEntry(label=label, quantity=quantity, text=text)

@@ -19,6 +19,8 @@ from ...optim.problem import WindowProfile
 from ...reports import parts
 from ...reports.content.blocks import Axis, Chart, Line
 from ...reports.record import Record
+from ...reports.record.document import Sections
+from ...reports.record.tables import CellEntry, CollectionEntry, FigureEntry, TableEntry
 from ...reports.summary import Shown, Summary
 from ...scenario import Scenario
 from ..collections import Arrays, certified_below, collection_record, newtons, printed, task_of
@@ -198,18 +200,18 @@ def comparison_record(comparison: Comparison) -> Record:
     """The comparison as a record: one table for each norm, and the torque histories."""
     scenario, arrays = comparison.scenario, Arrays()
     compared = [norm for norm in scenario.compare.norms if any(norm in row.terms for row in comparison.rows)]
-    section = {
-        "title": "Laws on equal terms",
-        "summary": _summary(scenario),
-        "tables": [_laws_table(comparison)] + [_norm_table(comparison, norm) for norm in compared],
-        "figures": [_torque_figure(comparison, norm, arrays) for norm in scenario.compare.norms],
-        "notes": list(_notes(comparison)),
-    }
+    section = CollectionEntry(
+        title="Laws on equal terms",
+        summary=_summary(scenario),
+        tables=(_laws_table(comparison), *(_norm_table(comparison, norm) for norm in compared)),
+        figures=tuple(_torque_figure(comparison, norm, arrays) for norm in scenario.compare.norms),
+        notes=tuple(_notes(comparison)),
+    )
     return collection_record(
         scenario,
         title=f"Comparison of {scenario.name}",
         command=f"intermit compare {scenario.path.name}",
-        sections={"comparison": section},
+        sections=Sections(comparison=section),
         arrays=arrays,
     )
 
@@ -238,7 +240,7 @@ def _notes(comparison: Comparison) -> Iterator[str]:
         )
 
 
-def _laws_table(comparison: Comparison) -> dict[str, Any]:
+def _laws_table(comparison: Comparison) -> TableEntry:
     columns = [
         parts.column("law", "law"),
         parts.column("settling", "settling", "s"),
@@ -251,11 +253,11 @@ def _laws_table(comparison: Comparison) -> dict[str, Any]:
     return parts.table("laws", "What each law did", columns, rows)
 
 
-def _law_cells(row: Row) -> dict[str, Any]:
+def _law_cells(row: Row) -> dict[str, CellEntry]:
     if row.run is None:
         return {"law": row.label, "settling": "stopped"}
     run = row.run
-    settling: Any = "not by the horizon"
+    settling: CellEntry = "not by the horizon"
     if run.figures.settling is not None:
         settling = parts.figure_of("settling", run.figures.settling, digits=6, unit="s")
     floor = run.figures.filter_minimum
@@ -269,7 +271,7 @@ def _law_cells(row: Row) -> dict[str, Any]:
     }
 
 
-def _norm_table(comparison: Comparison, norm: str) -> dict[str, Any]:
+def _norm_table(comparison: Comparison, norm: str) -> TableEntry:
     columns = [
         parts.column("law", "law"),
         parts.column("peak", "law's peak", "N m"),
@@ -284,7 +286,7 @@ def _norm_table(comparison: Comparison, norm: str) -> dict[str, Any]:
     return parts.table(f"terms_{norm}", f"Against the optimum, {norm} norm", columns, rows)
 
 
-def _terms_cells(label: str, terms: EqualTerms) -> dict[str, Any]:
+def _terms_cells(label: str, terms: EqualTerms) -> dict[str, CellEntry]:
     ratio, gap = terms.ratio_to_optimum, terms.gap
     return {
         "law": label,
@@ -298,7 +300,7 @@ def _terms_cells(label: str, terms: EqualTerms) -> dict[str, Any]:
     }
 
 
-def _torque_figure(comparison: Comparison, norm: str, arrays: Arrays) -> dict[str, Any]:
+def _torque_figure(comparison: Comparison, norm: str, arrays: Arrays) -> FigureEntry:
     lines = []
     for number, row in enumerate(comparison.rows, start=1):
         if row.run is None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,6 +10,10 @@ from ...models.types import Array
 from ...reports import parts
 from ...reports.provenance import provenance
 from ...reports.record import Record
+from ...reports.record.claims import QuantityEntry
+from ...reports.record.document import Outcome, Sections
+from ...reports.record.optimum import LocalOptima, OptimumArrays, OptimumEntry
+from ...reports.record.runs import EffortEntry
 from ..check.record import scenario_entry
 from .result import Optimum, OptimumStudy
 from .run import final_time, idle_words
@@ -22,7 +26,7 @@ def optimum_record(study: OptimumStudy, *, date: str = "", author: str = "", com
     """The record of one optimum study."""
     scenario = study.scenario
     entries, arrays = optimum_sections(study)
-    effort = [e for entry in entries for e in entry.get("effort", ())]
+    effort = [e for entry in entries for e in entry.effort]
     found = provenance(
         scenario_name=scenario.name,
         scenario_text=scenario.text,
@@ -35,16 +39,16 @@ def optimum_record(study: OptimumStudy, *, date: str = "", author: str = "", com
     )
     return Record.create(
         title=f"Least peak torque of {scenario.name}",
-        provenance=found | {"input_sha256": scenario.sha256},
-        sections={"scenario": scenario_entry(scenario), "optimum": entries},
+        provenance=found.but(input_sha256=scenario.sha256),
+        sections=Sections(scenario=scenario_entry(scenario), optimum=tuple(entries)),
         arrays=arrays,
-        outcome={"exit_code": study.exit_code, "sentence": study.sentence},
+        outcome=Outcome(exit_code=study.exit_code, sentence=study.sentence),
     )
 
 
-def optimum_sections(study: OptimumStudy) -> tuple[list[dict[str, Any]], dict[str, Array]]:
+def optimum_sections(study: OptimumStudy) -> tuple[list[OptimumEntry], dict[str, Array]]:
     """Section `optimum` and the arrays it names."""
-    entries: list[dict[str, Any]] = []
+    entries: list[OptimumEntry] = []
     arrays: dict[str, Array] = {}
     for optimum in study.optima:
         entry, held = optimum_entry(study, optimum)
@@ -53,43 +57,58 @@ def optimum_sections(study: OptimumStudy) -> tuple[list[dict[str, Any]], dict[st
     return entries, arrays
 
 
-def optimum_entry(study: OptimumStudy, optimum: Optimum) -> tuple[dict[str, Any], dict[str, Array]]:
+def optimum_entry(study: OptimumStudy, optimum: Optimum) -> tuple[OptimumEntry, dict[str, Array]]:
     """One least peak with its checks, and its history on a grid."""
     answer, problem = optimum.answer, optimum.problem
     key, unit = f"optimum.{optimum.key}", problem.norm.unit
     held = history_arrays(optimum, key)
-    entry: dict[str, Any] = {
-        "key": key,
-        "label": f"least peak, {problem.norm.name}",
-        "norm": optimum.key,
-        "profile": study.scenario.optimum.profile,
-        "terminal": "; ".join(filter(None, (terminal_words(optimum), idle_words(study.scenario, problem)))),
-        "final_time": parts.quantity("final_time", float(final_time(study.scenario)), unit="s"),
-        "value": parts.figure_of("least_peak", answer.peak if held else None, digits=6, unit=unit),
-        "residuals": residuals(optimum),
-        "local_optima": {
-            "starts": len(answer.search.starts),
-            "values": list(answer.search.local_optima),
-            "unit": unit,
-            "spread": parts.figure_of("spread", answer.search.spread, digits=3),
-        },
-        "effort": [
-            {"label": f"convex or Newton programs, {optimum.key}", "count": answer.iterations},
-            {"label": f"starts, {optimum.key}", "count": len(answer.search.starts)},
-        ],
-        "notes": notes(study.scenario.path.name, optimum),
-    }
-    if optimum.bound is not None:
-        bound = optimum.bound
-        entry["bound"] = _lower("certified_bound", bound.value, unit)
-        entry["bound_name"] = bound.name
-        entry["other_bounds"] = [_lower(b.name, b.value, unit) for b in bound.all if b is not bound.best]
-    if optimum.gap is not None:
-        entry["gap"] = parts.quantity("gap", 0.0, 100 * max(0.0, optimum.gap), unit="%", side="upper")
-    if held:
-        entry["arrays"] = {name.removeprefix(f"{key}."): name for name in held}
-    if answer.switching is not None:
-        entry["switch_times"] = [time for time, _ in answer.switching.switch_times]
+    bound, search = optimum.bound, answer.search
+
+    def array(role: str) -> str | None:
+        return f"{key}.{role}" if f"{key}.{role}" in held else None
+
+    arrays = OptimumArrays(
+        time=f"{key}.time",
+        quaternion=array("quaternion"),
+        rate=array("rate"),
+        torque=array("torque"),
+        switching=array("switching"),
+        profile=array("profile"),
+        momentum=array("momentum"),
+    )
+    entry = OptimumEntry(
+        key=key,
+        label=f"least peak, {problem.norm.name}",
+        norm=optimum.key,
+        profile=study.scenario.optimum.profile,
+        terminal="; ".join(filter(None, (terminal_words(optimum), idle_words(study.scenario, problem)))),
+        final_time=parts.quantity("final_time", float(final_time(study.scenario)), unit="s"),
+        value=parts.figure_of("least_peak", answer.peak if held else None, digits=6, unit=unit),
+        bound=None if bound is None else _lower("certified_bound", bound.value, unit),
+        bound_name=None if bound is None else bound.name,
+        other_bounds=None
+        if bound is None
+        else tuple(_lower(b.name, b.value, unit) for b in bound.all if b is not bound.best),
+        gap=None
+        if optimum.gap is None
+        else parts.quantity("gap", 0.0, 100 * max(0.0, optimum.gap), unit="%", side="upper"),
+        arrays=arrays if held else None,
+        switch_times=None
+        if answer.switching is None
+        else tuple(time for time, _ in answer.switching.switch_times),
+        residuals=tuple(residuals(optimum)),
+        local_optima=LocalOptima(
+            starts=len(search.starts),
+            values=tuple(search.local_optima),
+            unit=unit,
+            spread=parts.figure_of("spread", search.spread, digits=3),
+        ),
+        effort=(
+            EffortEntry(label=f"convex or Newton programs, {optimum.key}", count=answer.iterations),
+            EffortEntry(label=f"starts, {optimum.key}", count=len(search.starts)),
+        ),
+        notes=tuple(notes(study.scenario.path.name, optimum)),
+    )
     return entry, held
 
 
@@ -119,7 +138,7 @@ def least_impulse_words(least: LeastImpulseFound) -> str:
     return f"{said}: {answer.reason}" if answer.reason else said
 
 
-def _lower(name: str, value: float, unit: str) -> dict[str, Any]:
+def _lower(name: str, value: float, unit: str) -> QuantityEntry:
     return parts.quantity(name, value, unit=unit, rigorous=True, side="lower")
 
 
@@ -156,7 +175,7 @@ def terminal_words(optimum: Optimum) -> str:
     return f"|bv| <= {float(terminal.attitude):g}, |w| <= {float(terminal.rate):g} rad/s"
 
 
-def residuals(optimum: Optimum) -> list[dict[str, Any]]:
+def residuals(optimum: Optimum) -> list[QuantityEntry]:
     """Checks of the answer, recomputed outside the solver."""
     answer = optimum.answer
     if answer.flown is None or answer.switching is None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
-from typing import Any, final
+from typing import final
 
 import numpy as np
 
@@ -14,6 +14,8 @@ from ...models.norms import LARGEST_COMPONENT
 from ...optim.comparison.measure import LawRun, run_law
 from ...reports import parts
 from ...reports.record import Record
+from ...reports.record.document import Sections
+from ...reports.record.tables import CellEntry, CollectionEntry, FigureEntry, TableEntry
 from ...scenario import Scenario
 from ..collections import Arrays, collection_record, task_of
 from .statements import StartData, Statement, Survey, statements, survey
@@ -110,30 +112,30 @@ def paper_record(study: PaperStudy) -> Record:
             ("k", "gain k", "1/s"),
         )
     ]
-    section = {
-        "title": "The paper's own comparisons",
-        "summary": "What the paper's text says of its figures, checked on the runs of this example and over "
+    section = CollectionEntry(
+        title="The paper's own comparisons",
+        summary="What the paper's text says of its figures, checked on the runs of this example and over "
         "choices of the data it leaves open (initial attitude and rate, lambda, R(0), k(0)).",
-        "tables": [_statement_table(study)] + ([_survey_table(study)] if study.surveys else []),
-        "figures": figures,
-        "notes": ["Observations on simulated runs, not theorems."],
-    }
+        tables=(_statement_table(study), *((_survey_table(study),) if study.surveys else ())),
+        figures=tuple(figures),
+        notes=("Observations on simulated runs, not theorems.",),
+    )
     return collection_record(
         study.scenarios[0],
         title="The paper's own comparisons",
         command="intermit paper",
-        sections={"paper_claims": section},
+        sections=Sections(paper_claims=section),
         arrays=arrays,
     )
 
 
-def _statement_table(study: PaperStudy) -> dict[str, Any]:
+def _statement_table(study: PaperStudy) -> TableEntry:
     columns = [parts.column("says", "the paper says")]
     for number, body in enumerate(study.bodies, start=1):
         columns += [parts.column(f"holds{number}", body.name), parts.column(f"detail{number}", "figures")]
     rows = []
     for i, statement in enumerate(study.statements[0]):
-        row: dict[str, Any] = {"says": statement.says}
+        row: dict[str, CellEntry] = {"says": statement.says}
         for number, said in enumerate(study.statements, start=1):
             row[f"holds{number}"] = "holds" if said[i].holds else "fails"
             row[f"detail{number}"] = said[i].detail
@@ -141,7 +143,7 @@ def _statement_table(study: PaperStudy) -> dict[str, Any]:
     return parts.table("statements", "On this example", columns, rows)
 
 
-def _survey_table(study: PaperStudy) -> dict[str, Any]:
+def _survey_table(study: PaperStudy) -> TableEntry:
     says = {s.key: s.says for s in study.statements[0]}
     columns = [
         parts.column("says", "the paper says"),
@@ -166,7 +168,7 @@ def _words(choice: StartData) -> str:
     )
 
 
-def _gain_figure(body: BodyRuns, arrays: Arrays) -> dict[str, Any]:
+def _gain_figure(body: BodyRuns, arrays: Arrays) -> FigureEntry:
     schedule = body.slow.task.schedule
     t = np.linspace(0, float(schedule.period or schedule.end), 801)
     line = parts.series("g", arrays.put("g.time", t), arrays.put("g.value", schedule.gain(t)))
@@ -176,7 +178,7 @@ def _gain_figure(body: BodyRuns, arrays: Arrays) -> dict[str, Any]:
     )  # fmt: skip
 
 
-def _figure(body: BodyRuns, arrays: Arrays, group: str, name: str, title: str, unit: str) -> dict[str, Any]:
+def _figure(body: BodyRuns, arrays: Arrays, group: str, name: str, title: str, unit: str) -> FigureEntry:
     t = np.linspace(0, body.slow.trajectory.end, POINTS)
     x, lines = arrays.put(f"{group}.{name}.time", t), []
     for number, run in enumerate(body.runs, start=1):

@@ -8,7 +8,8 @@ from ...models.norms import NORMS
 from ...models.types import Progress, silent
 from ...reports.join import join
 from ...reports.record import Record
-from ...reports.record.values import thaw
+from ...reports.record.document import Sections
+from ...reports.record.tables import CollectionEntry
 from ...scenario import Scenario
 from ..check.record import check_record
 from ..check.result import CheckStudy
@@ -91,10 +92,15 @@ def _audit(check: Record) -> Record:
     """
     from ..paper.audit_record import audit_record, run_audit
 
-    section = thaw(audit_record(run_audit()).document["sections"])["audit"]
-    del section["claims"]
-    section["notes"] += ["`intermit audit --json FILE` writes every counterexample in full."]
-    return Record.create(title="audit", provenance=check.document["provenance"], sections={"audit": section})
+    found = audit_record(run_audit()).sections.audit
+    assert found is not None
+    section = CollectionEntry(
+        title=found.title,
+        summary=found.summary,
+        tables=found.tables,
+        notes=(*found.notes, "`intermit audit --json FILE` writes every counterexample in full."),
+    )
+    return Record.create(title="audit", provenance=check.provenance, sections=Sections(audit=section))
 
 
 def _part(tell: Progress, start: float, end: float) -> Progress:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, final
+from typing import final
 
 from ...models.norms import NORMS, Norm
 from ...optim.comparison.measure import Task
@@ -14,6 +14,9 @@ from ...optim.schedule_study import LeastOnTime, ScheduleCase, ScheduleFamily, l
 from ...optim.tuning.conditions import certified_floor
 from ...reports import parts
 from ...reports.record import Record
+from ...reports.record.claims import QuantityEntry
+from ...reports.record.document import Sections
+from ...reports.record.tables import CellEntry, CollectionEntry, FigureEntry, TableEntry
 from ...scenario import LawChoice, Scenario, ScenarioError
 from ..collections import Arrays, certified_below, collection_record, newtons, task_of
 
@@ -96,37 +99,37 @@ def schedule_record(study: ScheduleStudy) -> Record:
     """The study as a table, a figure for each quantity, and the inverse answers."""
     arrays = Arrays()
     tables = [_cases_table(study)] + ([_least_table(study)] if study.least else [])
-    section = {
-        "title": f"Schedule study of {study.law.label}",
-        "summary": f"One Hermite window a period; optimum and bound for {float(study.time):g} s to the "
+    section = CollectionEntry(
+        title=f"Schedule study of {study.law.label}",
+        summary=f"One Hermite window a period; optimum and bound for {float(study.time):g} s to the "
         "scenario's terminal tolerances.",
-        "tables": tables,
-        "figures": [
+        tables=tuple(tables),
+        figures=(
             _figure(study, arrays, "law", "peak of the law", "N m", lambda c: c.law_peak),
             _figure(study, arrays, "optimum", "optimum found", "N m", lambda c: c.best.optimum),
             _figure(study, arrays, "bound", "certified bound", "N m", lambda c: c.best.bound),
             _figure(study, arrays, "floor", "certified floor of R", "s", lambda c: c.floor),
-        ],
-    }
+        ),
+    )
     return collection_record(
         study.scenario,
         title=f"Schedule study of {study.scenario.name}",
         command=f"intermit sweep {study.scenario.path.name}",
-        sections={"schedule_study": section},
+        sections=Sections(schedule_study=section),
         arrays=arrays,
         options={"norm": study.norm.key, "time": float(study.time), "law": study.law.label},
     )
 
 
-def _seconds(name: str, value: float | None, missing: str) -> Any:
+def _seconds(name: str, value: float | None, missing: str) -> CellEntry:
     return missing if value is None else parts.figure_of(name, value, digits=6, unit="s")
 
 
-def _exact(name: str, value: Fraction, unit: str = "s") -> dict[str, Any]:
+def _exact(name: str, value: Fraction, unit: str = "s") -> QuantityEntry:
     return parts.quantity(name, float(value), unit=unit)
 
 
-def _cases_table(study: ScheduleStudy) -> dict[str, Any]:
+def _cases_table(study: ScheduleStudy) -> TableEntry:
     columns = [
         parts.column("period", "period", "s"),
         parts.column("on", "on-time", "s"),
@@ -136,7 +139,7 @@ def _cases_table(study: ScheduleStudy) -> dict[str, Any]:
         parts.column("optimum", "optimum found", "N m"),
         parts.column("bound", "certified bound", "N m"),
     ]
-    rows = [
+    rows: list[dict[str, CellEntry]] = [
         {
             "period": _exact("period", case.period),
             "on": _exact("on", case.on_time),
@@ -155,7 +158,7 @@ def _cases_table(study: ScheduleStudy) -> dict[str, Any]:
     return parts.table("schedules", f"Periods and duty cycles, {study.norm.key} norm", columns, rows)
 
 
-def _least_table(study: ScheduleStudy) -> dict[str, Any]:
+def _least_table(study: ScheduleStudy) -> TableEntry:
     columns = [
         parts.column("period", "period", "s"),
         parts.column("suffices", "on-time that suffices", "s"),
@@ -164,7 +167,7 @@ def _least_table(study: ScheduleStudy) -> dict[str, Any]:
         parts.column("optimum", "optimum there", "N m"),
         parts.column("limiting", "what fails below"),
     ]
-    rows = []
+    rows: list[dict[str, CellEntry]] = []
     for answer in study.least:
         floor = answer.floor
         rows.append(
@@ -183,11 +186,17 @@ def _least_table(study: ScheduleStudy) -> dict[str, Any]:
 
 
 def _figure(
-    study: ScheduleStudy, arrays: Arrays, key: str, title: str, unit: str, value: Any
-) -> dict[str, Any]:
+    study: ScheduleStudy,
+    arrays: Arrays,
+    key: str,
+    title: str,
+    unit: str,
+    value: Callable[[ScheduleCase], float | None],
+) -> FigureEntry:
     lines = []
     for number, period in enumerate(dict.fromkeys(case.period for case in study.cases), start=1):
-        known = [(c.duty_cycle, value(c)) for c in study.cases if c.period == period and value(c) is not None]
+        all_of = ((c.duty_cycle, value(c)) for c in study.cases if c.period == period)
+        known = [(duty, found) for duty, found in all_of if found is not None]
         if known:
             x = arrays.put(f"study.{key}.{number}.duty", [d for d, _ in known])
             y = arrays.put(f"study.{key}.{number}.value", [v for _, v in known])

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 
@@ -18,6 +17,8 @@ from ...optim.tuning.space import SearchSpace
 from ...optim.tuning.tune import Tuned, tune
 from ...reports import parts
 from ...reports.record import Record
+from ...reports.record.document import Sections
+from ...reports.record.tables import CellEntry, CodeCell, CollectionEntry, SeriesEntry
 from ...scenario import LawChoice, Scenario, ScenarioError
 from ...verify.filter.recognise import has_comparison
 from ..collections import Arrays, certified_below, collection_record, newtons, task_of
@@ -127,13 +128,14 @@ def tuning_record(scenario: Scenario, tuned: Tuned) -> Record:
     run = tuned.run(task_of(scenario))
     tables = []
     if run is not None:
-        rows = [
-            {"name": name, "value": {"code": str(float(value))}} for name, value in run.law.parameters.items()
+        rows: list[dict[str, CellEntry]] = [
+            {"name": name, "value": CodeCell(code=str(float(value)))}
+            for name, value in run.law.parameters.items()
         ]
         columns = [parts.column("name", "parameter"), parts.column("value", "value, exact")]
         tables.append(parts.table("parameters", f"Parameters of {tuned.label}", columns, rows))
         assert run.figures.settling is not None
-        figures = [
+        figures: list[dict[str, CellEntry]] = [
             {
                 "name": "settling time",
                 "value": parts.figure_of("settling", run.figures.settling, digits=6, unit="s"),
@@ -160,17 +162,19 @@ def tuning_record(scenario: Scenario, tuned: Tuned) -> Record:
         scenario,
         title=f"Tuning of {tuned.label}",
         command=f"intermit tune {scenario.path.name}",
-        sections={
-            "tuning": {
-                "title": f"Least peak of {tuned.label} settled by {float(tuned.settle):g} s",
-                "summary": _summary(tuned),
-                "tables": tables,
-                "figures": figures_out,
-                "notes": [f"refused: {reason}" for _, reason in tuned.refused]
-                + _uncertified(scenario, [tuned.label])
-                + ["A seeded global search: an upper bound on the least peak this law can reach."],
-            }
-        },
+        sections=Sections(
+            tuning=CollectionEntry(
+                title=f"Least peak of {tuned.label} settled by {float(tuned.settle):g} s",
+                summary=_summary(tuned),
+                tables=tuple(tables),
+                figures=tuple(figures_out),
+                notes=(
+                    *(f"refused: {reason}" for _, reason in tuned.refused),
+                    *_uncertified(scenario, [tuned.label]),
+                    "A seeded global search: an upper bound on the least peak this law can reach.",
+                ),
+            )
+        ),
         arrays=arrays,
         seeds={"search": tuned.history.seed},
         options={"settle": float(tuned.settle), "norm": tuned.norm.key, "trials": len(tuned.history.trials)},
@@ -205,7 +209,7 @@ def front_record(scenario: Scenario, front: Front) -> Record:
     ]
     rows = [_front_row(front, i) for i in range(len(settles))]
     band = [i for i, b in enumerate(front.best) if b.optimum is not None]
-    lines: list[dict[str, Any]] = []
+    lines: list[SeriesEntry] = []
     if band:
         x = arrays.put("front.band.settle", [settles[i] for i in band])
         low = arrays.put("front.band.bound", [front.best[i].bound for i in band])
@@ -218,37 +222,37 @@ def front_record(scenario: Scenario, front: Front) -> Record:
             x = arrays.put(f"front.law{number}.settle", [s for s, _ in found])
             y = arrays.put(f"front.law{number}.peak", [p for _, p in found])
             lines.append(parts.series(f"{label}, tuned", x, y, style="line+points", role="law"))
-    section = {
-        "title": "Peak torque against settling time",
-        "summary": "The optimum with its certified band, and the best each law reaches over its parameters.",
-        "tables": [parts.table("front", f"Pareto front, {front.norm.key} norm", columns, rows)],
-        "figures": [
+    section = CollectionEntry(
+        title="Peak torque against settling time",
+        summary="The optimum with its certified band, and the best each law reaches over its parameters.",
+        tables=(parts.table("front", f"Pareto front, {front.norm.key} norm", columns, rows),),
+        figures=(
             parts.figure(
                 "front", "Pareto front", parts.axis("settled by", "s"),
                 parts.axis("peak torque", "N m", log=True), lines,
                 alt="Peak torque against settling time for each law and for the optimum with its bound.",
-            )
-        ],
-        "notes": [
+            ),
+        ),
+        notes=(
             "No controller whatever lies below the certified bound.",
             "A law's points come from a seeded global search: upper bounds on its least peak.",
             *_uncertified(scenario, list(front.runs)),
-        ],
-    }  # fmt: skip
+        ),
+    )  # fmt: skip
     return collection_record(
         scenario,
         title=f"Pareto front of {scenario.name}",
         command=f"intermit tune {scenario.path.name} --front",
-        sections={"front": section},
+        sections=Sections(front=section),
         arrays=arrays,
         seeds={"search": scenario.tune.seed},
         options={"settle": settles, "norm": front.norm.key},
     )
 
 
-def _front_row(front: Front, index: int) -> dict[str, Any]:
+def _front_row(front: Front, index: int) -> dict[str, CellEntry]:
     best = front.best[index]
-    row: dict[str, Any] = {
+    row: dict[str, CellEntry] = {
         "settle": parts.quantity("settle", float(best.settle), unit="s"),
         "bound": certified_below("bound", best.bound),
         "optimum": best.answer.reason if best.optimum is None else newtons("optimum", best.optimum),

@@ -4,13 +4,14 @@ import pytest
 from intermit.models.laws import LAWS, Equation
 from intermit.reports.content.blocks import Equations, Verbatim
 from intermit.reports.content.equations import PLANT, equation_blocks, is_formula
+from intermit.reports.record.runs import CaseEntry, EquationEntry
 
 LAW_EQUATIONS = [(name, e) for name, law in LAWS.items() for e in law.equations]
 
 
 def case(name, *equations):
-    stated = [{"title": e.title, "typst": e.typst, "latex": e.latex} for e in equations]
-    return {"label": name, "law": name, "equations": stated}
+    stated = tuple(EquationEntry(title=e.title, typst=e.typst, latex=e.latex) for e in equations)
+    return CaseEntry(key=name, label=name, law=name, equations=stated)
 
 
 def set_of(*cases):

@@ -3,7 +3,6 @@
 import html.parser
 import json
 import re
-from typing import Any
 
 import numpy as np
 import pytest
@@ -18,7 +17,7 @@ from intermit.reports.html import html_page
 from intermit.reports.numbers import write
 from intermit.reports.record.values import thaw
 from respoken import respoken
-from synthetic_record import make
+from synthetic_record import make, quantities
 
 
 class Reader(html.parser.HTMLParser):
@@ -53,18 +52,11 @@ def page_of(record: Record) -> str:
     return html_page(heading(record), chapters(record))
 
 
-def quantities(value: Any) -> list[dict[str, Any]]:
-    if isinstance(value, dict):
-        here = [value] if {"name", "low", "high"} <= set(value) else []
-        return here + [q for v in value.values() for q in quantities(v)]
-    return [q for v in value for q in quantities(v)] if isinstance(value, list) else []
-
-
 def test_every_number_and_claim_of_the_record_is_on_the_page(record: Record) -> None:
     reader = read(page_of(record))
     text = " ".join("".join(reader.words).split())
     document = thaw(record.document)
-    found = quantities(document["sections"])
+    found = quantities(record)
     assert len(found) > 40
     for q in found:
         assert write(q, unit=False).text in text, q

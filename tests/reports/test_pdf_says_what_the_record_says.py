@@ -4,7 +4,6 @@ import io
 import subprocess
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import pytest
 from hostile_text import HOSTILE
@@ -18,10 +17,9 @@ from intermit.reports.content.figures import drawings, pdf_figures
 from intermit.reports.content.heading import heading
 from intermit.reports.numbers import write
 from intermit.reports.pdf import pdf_document
-from intermit.reports.record.values import thaw
 from outside_tools import need
 from respoken import respoken
-from synthetic_record import make
+from synthetic_record import make, quantities
 
 pypdf = pytest.importorskip("pypdf")
 
@@ -46,23 +44,16 @@ def pages(document: bytes) -> list[str]:
     return [page.extract_text() for page in pypdf.PdfReader(io.BytesIO(document)).pages]
 
 
-def quantities(value: Any) -> list[dict[str, Any]]:
-    if isinstance(value, dict):
-        here = [value] if {"name", "low", "high"} <= set(value) else []
-        return here + [q for v in value.values() for q in quantities(v)]
-    return [q for v in value for q in quantities(v)] if isinstance(value, list) else []
-
-
 def test_every_number_of_the_record_is_in_the_text(record: Record, document: bytes) -> None:
     text = squeezed("".join(pages(document)))
-    for q in quantities(thaw(record.document["sections"])):
+    for q in quantities(record):
         assert squeezed(write(q, unit=False).text) in text, q
 
 
 def test_first_page_has_title_answer_hash_and_verdicts(record: Record, document: bytes) -> None:
     first = squeezed(pages(document)[0])
     for words in (
-        record.document["title"],
+        record.title,
         "10 claims asked",
         "2021-02-01",
         record.sha256,

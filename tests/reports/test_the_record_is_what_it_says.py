@@ -158,7 +158,7 @@ def test_provenance_takes_the_date_from_the_user_or_the_source(monkeypatch: pyte
     assert source_date() == ""
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "86400")
     assert source_date() == "1970-01-02"
-    assert provenance(scenario_name="s", scenario_text="", date="2021-02-01")["date"] == "2021-02-01"
+    assert provenance(scenario_name="s", scenario_text="", date="2021-02-01").date == "2021-02-01"
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "yesterday")
     with pytest.raises(ValueError, match="whole seconds"):
         source_date()

@@ -3,8 +3,10 @@
 from types import SimpleNamespace
 
 import numpy as np
+import pytest
 from intermit.reports.content import runs
-from intermit.reports.exports.series import UNITS
+from intermit.reports.record.base import unit_of
+from intermit.reports.record.runs import BoundArrays, RunArrays
 
 
 def test_chart_of_storage_has_the_units_of_its_columns(monkeypatch):
@@ -16,8 +18,16 @@ def test_chart_of_storage_has_the_units_of_its_columns(monkeypatch):
     monkeypatch.setattr(runs, "shaded", lambda _: ())
     chapter = runs.storage_chapter(None)
     charts = [chart for block in chapter.blocks for chart in block.charts]
-    assert [chart.y.unit for chart in charts] == [UNITS["storage"], UNITS["storage_rate"]]
-    # V is of the dimension of Omega'J (kg m^2/s); its derivative has one more second.
-    assert UNITS["storage_rate"] == f"{UNITS['storage']}^2"
-    assert UNITS["storage_bound"] == UNITS["storage"] == "kg m^2/s"
-    assert UNITS["rate_bound"] == "kg^1/2 m rad/s"
+    assert [chart.y.unit for chart in charts] == ["kg m^2/s", "kg m^2/s^2"]
+
+
+def test_each_unit_stands_in_its_field():
+    """V is of the dimension of Omega'J (kg m^2/s); its derivative has one more second."""
+    storage, rate = (unit_of(RunArrays, name) for name in ("storage", "storage_rate"))
+    assert rate == f"{storage}^2"
+    assert unit_of(RunArrays, "storage_bound") == storage == "kg m^2/s"
+    assert unit_of(BoundArrays, "rate_bound") == "kg^1/2 m rad/s"
+    assert unit_of(BoundArrays, "speed_bound") == unit_of(RunArrays, "rate") == "rad/s"
+    assert unit_of(BoundArrays, "torque_bound") == unit_of(RunArrays, "torque") == "N m"
+    with pytest.raises(KeyError):
+        unit_of(RunArrays, "invented")

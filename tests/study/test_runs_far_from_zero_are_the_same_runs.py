@@ -53,13 +53,13 @@ def test_moved_tables_give_the_same_figures(tmp_path, seed):
     for shift in (10**3, 10**6, 1_760_000_000):
         _, moved = run(tmp_path, windows, shift)
         assert moved.origin == windows[0][0] + shift
-        known = {m["name"]: m for m in metrics(still)}
+        known = {m.name: m for m in metrics(still)}
         for metric in metrics(moved):
-            low, same = metric.get("low"), known[metric["name"]].get("low")
+            low, same = metric.low, known[metric.name].low
             if same is None:
-                assert low is None, metric["name"]
+                assert low is None, metric.name
                 continue
-            assert low == pytest.approx(same, rel=1e-9, abs=1e-12), metric["name"]
+            assert low == pytest.approx(same, rel=1e-9, abs=1e-12), metric.name
         assert moved.trajectory.evaluations <= 1.2 * still.trajectory.evaluations
 
 
