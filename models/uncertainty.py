@@ -74,3 +74,7 @@ def _is_something(value: object) -> bool:
     if isinstance(value, tuple):
         return any(_is_something(entry) for entry in value)
     return bool(value)
+
+
+NOMINAL = Uncertainty()
+"""Nothing uncertain."""

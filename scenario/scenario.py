@@ -12,7 +12,8 @@ from typing import Any, final
 from ..models.linear import LinearPlant
 from ..models.rigid_body import ExactMatrix, RigidBody
 from ..models.schedule import Schedule
-from . import initial, laws, linear, schedules, spacecraft
+from ..models.uncertainty import Uncertainty
+from . import initial, laws, linear, schedules, spacecraft, uncertain
 from .document import Document, read_document
 from .errors import ScenarioError, quote
 from .fingerprint import fingerprint
@@ -44,6 +45,7 @@ class Scenario:
     spacecraft_name : the user's word for the body
     body : rigid body with its exact inertia
     inertia_tolerance : largest deviation of each entry, kg m^2, exact, or None
+    uncertainty : what the controller does not know
     schedule_choice : the schedule, its shape and source
     initial : state at t = 0, as an error from the target attitude
     initial_set : set of states over which claims are made
@@ -62,6 +64,7 @@ class Scenario:
     spacecraft_name: str
     body: RigidBody
     inertia_tolerance: ExactMatrix | None
+    uncertainty: Uncertainty
     schedule_choice: ScheduleChoice
     initial: InitialState
     initial_set: InitialSet
@@ -162,6 +165,7 @@ def build_scenario(
         spacecraft_name=file.spacecraft.name,
         body=body,
         inertia_tolerance=tolerance,
+        uncertainty=uncertain.build(file, document, body),
         schedule_choice=schedule_choice,
         initial=state,
         initial_set=bounds,

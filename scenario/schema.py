@@ -81,6 +81,30 @@ class ScheduleTable(Table):
     thruster_fall: NotNegative = Fraction(0)
 
 
+class UncertaintyTable(Table):
+    """[uncertainty]: what the controller does not know; it uses [spacecraft]'s inertia and the g given.
+
+    `inertia_tolerance`: every entry of the body's inertia is known to +- this, kg m^2. `inertia_relative`:
+    (1 - rho) J0 <= J <= (1 + rho) J0 as quadratic forms. `inertia_scale`, `thrust_error`: common factors
+    1 + e of the inertia and 1 + d of the torque, each [low, high], or a number for both sides.
+    `thrust_error_varies`: "never", or "per-firing". `misalignment_deg`: a fixed turn of the torque, at most.
+    `disturbance`: a torque of any course, N m, Euclidean, at most.
+    """
+
+    inertia_tolerance: Any = None
+    inertia_relative: NotNegative = Fraction(0)
+    inertia_scale: Any = Fraction(0)
+    thrust_error: Any = Fraction(0)
+    thrust_error_varies: Literal["never", "per-firing"] = "per-firing"
+    misalignment_deg: NotNegative = Fraction(0)
+    disturbance: NotNegative = Fraction(0)
+
+    @field_validator("inertia_tolerance", "inertia_scale", "thrust_error")
+    @classmethod
+    def _exact_numbers(cls, value: Any) -> Any:
+        return [cls._exact_numbers(x) for x in value] if isinstance(value, list) else exact(value)
+
+
 class AttitudeTable(Table):
     """[target]: an attitude, as `quaternion` (scalar first) or as `axis` and `angle_deg`."""
 
@@ -183,6 +207,7 @@ class ScenarioFile(Table):
     tolerance: ToleranceTable = ToleranceTable()
     simulation: SimulationTable = SimulationTable()
     limits: LimitsTable | None = None
+    uncertainty: UncertaintyTable = UncertaintyTable()
     check: CheckTable = CheckTable()
     optimum: OptimumTable = OptimumTable()
     compare: CompareTable = CompareTable()

@@ -48,11 +48,24 @@ def build(
             f"{key}: breaks the triangle inequality (principal inertias {a:.6g}, {b:.6g}, {c:.6g} kg m^2): "
             "no rigid body has it; the results stand for the equations as given",
         )
-    tolerance = None if table.inertia_tolerance is None else _tolerance(table.inertia_tolerance, document)
-    if tolerance is not None and not _stays_definite(body.exact_inertia, tolerance):
-        where = document.where("spacecraft.inertia_tolerance")
-        raise ScenarioError(where, "reaches an inertia that is not positive definite: make it smaller")
+    tolerance = known_to(table.inertia_tolerance, body, document.where("spacecraft.inertia_tolerance"))
     return body, tolerance, warnings
+
+
+def known_to(value: Any, body: RigidBody, where: str) -> ExactMatrix | None:
+    """Return an inertia's tolerance entry by entry, from a number or rows; None where there is none.
+
+    Raises
+    ------
+    ScenarioError
+        If it is no symmetric tolerance, or reaches an inertia that is not positive definite.
+    """
+    if value is None:
+        return None
+    tolerance = _tolerance(value, where)
+    if not _stays_definite(body.exact_inertia, tolerance):
+        raise ScenarioError(where, "reaches an inertia that is not positive definite: make it smaller")
+    return tolerance
 
 
 def _inertia(table: SpacecraftTable, document: Document) -> tuple[str, ExactMatrix]:
@@ -94,8 +107,7 @@ def _stays_definite(inertia: ExactMatrix, tolerance: ExactMatrix) -> bool:
     return True
 
 
-def _tolerance(value: Any, document: Document) -> ExactMatrix:
-    key = document.where("spacecraft.inertia_tolerance")
+def _tolerance(value: Any, key: str) -> ExactMatrix:
     rows = value if isinstance(value, list) else [[value] * 3] * 3
     shaped = len(rows) == 3 and all(isinstance(row, list) and len(row) == 3 for row in rows)
     if not shaped or not all(isinstance(x, Fraction) for row in rows for x in row):

@@ -27,6 +27,7 @@ from ...verify.filter.recognise import (
 )
 from ...verify.linear.stability import plant_data
 from ...verify.lyapunov.forms import inertia_data, law_form
+from ...verify.robust.certificate import uncertainty_data
 from ...verify.schedule.filter_start import greatest_gain_at
 from ...verify.schedule.zero_runs import default_length
 from ..check.filter_question import floor_question
@@ -86,6 +87,7 @@ class _Known:
         data: dict[str, Any] = {"schedule": schedule_data(scenario.schedule)}
         data |= windows_data(scenario.schedule)
         data |= inertia_data(scenario.body.exact_inertia, scenario.inertia_tolerance)
+        data["uncertainty"] = uncertainty_data(scenario.uncertainty)
         if scenario.linear is not None:
             data |= plant_data(scenario.linear)
         form = compared = None
@@ -167,7 +169,7 @@ def _unequal_claim(certificate: Mapping[str, Any], known: _Known) -> Iterator[st
     """Names of what a claim assumes beside the data, and the scenario does not say."""
     kind, claim, scenario = certificate["kind"], certificate["claim"], known.scenario
     schedule = scenario.schedule
-    if kind == "filter-floor":
+    if kind in ("filter-floor", "robust-floor"):
         tolerance = as_text({"attitude": scenario.tolerance.attitude, "rate": scenario.tolerance.rate})
         settling = claim.get("settling", {})
         for name, value in tolerance.items():

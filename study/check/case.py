@@ -8,6 +8,8 @@ from fractions import Fraction
 from functools import partial
 from typing import final
 
+import numpy as np
+
 from ...models.closed_loop import close_loop
 from ...models.laws import Law
 from ...models.types import Progress, silent
@@ -18,12 +20,14 @@ from ...verify.filter.over_time import BoundsOverTime, bounds_over_time
 from ...verify.filter.recognise import follows_filter
 from ...verify.filter.torque_excess import refuted_limit
 from ...verify.lyapunov.claims import lyapunov_claims
+from ...verify.robust.claims import robust_claims
+from ...verify.robust.found import MembersFound, fly_members
 from ...verify.sampling import SampledDerivative, with_samples
 from ...verify.schedule.filter_start import filter_start_claim
 from ...verify.verdict import Claim, Quantity, Verdict
 from ..claims.keys import CLAIM_KEYS, order_of
 from ..simulated_run import Run, RunFigures
-from .filter_question import floor_question, is_certified
+from .filter_question import floor_question, is_certified, robust_question
 from .margins import convergence_margins, with_margins
 from .sampled import reference_floor, sample_law
 from .why_floor import floor_note
@@ -100,6 +104,10 @@ class Decided:
     has_margins: bool
 
 
+KNOWN_BODY = (
+    "the claims that do not say 'on every body' speak of a body, thrusters and a torque known exactly: "
+    "[uncertainty] does not enter them"
+)
 Sampled = tuple[SampledDerivative | None, str]
 """Samples of V', or the reason why there are none."""
 
@@ -123,6 +131,14 @@ def decide(
     if "R" not in (state.name for state in law.controller_states):
         del claims["filter.floor"]
     _add_torque(claims, found)
+    if not scenario.uncertainty.is_nominal:
+        tell("every body of the uncertainty", 0.45)
+        claims |= {
+            claim.key: claim
+            for claim in robust_claims(
+                robust_question(scenario, law), _members(scenario, law), margins=options.margins
+            )
+        }
     limit = claims.get("torque.limit")
     if limit is not None and limit.verdict is Verdict.UNDECIDED and seen.excess_at is not None:
         tell("the run beyond the torque limit", 0.5)
@@ -161,7 +177,8 @@ def findings(decided: Decided, margins: tuple[Quantity, ...], sampled: Sampled) 
     if found is not None:
         _add_samples(claims, found)
     ordered = tuple(sorted(claims.values(), key=lambda claim: order_of(claim.key)))
-    told = (decided.note, f"V' was not sampled: {why_not}" if why_not else "")
+    known = "" if not any(key.startswith("robust.") for key in claims) else KNOWN_BODY
+    told = (decided.note, f"V' was not sampled: {why_not}" if why_not else "", known)
     notes = tuple(note for note in told if note)
     return Findings(ordered, decided.reference_floor, decided.curves, found, notes)
 
@@ -169,7 +186,22 @@ def findings(decided: Decided, margins: tuple[Quantity, ...], sampled: Sampled) 
 def decided_claims(scenario: Scenario, law: Law) -> tuple[Claim, ...]:
     """Claims about one law that exact means decide, with their certificates; no samples, no simulation."""
     found = answer(floor_question(scenario, law, RunFigures(), search=False))
-    return (*_algebraic_claims(scenario, law), *found.claims)
+    robust = () if scenario.uncertainty.is_nominal else robust_claims(robust_question(scenario, law))
+    return (*_algebraic_claims(scenario, law), *found.claims, *robust)
+
+
+def _members(scenario: Scenario, law: Law) -> MembersFound:
+    """Extreme members flown from the scenario's start."""
+    start = np.concatenate([scenario.initial.quaternion, scenario.initial.rate])
+    return fly_members(
+        law,
+        scenario.body,
+        scenario.schedule,
+        scenario.uncertainty,
+        start,
+        scenario.horizon,
+        seed=scenario.check.seed,
+    )
 
 
 def _algebraic_claims(scenario: Scenario, law: Law) -> Iterator[Claim]:

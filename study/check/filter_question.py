@@ -12,6 +12,7 @@ from ...verify.filter.certify import FloorOptions, certify_floor
 from ...verify.filter.claims import reaches_far_enough
 from ...verify.filter.question import FloorQuestion
 from ...verify.filter.worst_found import Search
+from ...verify.robust.answer import RobustQuestion
 from ..simulated_run import RunFigures
 
 COARSE = FloorOptions(max_bins=1, max_periods=8)
@@ -36,6 +37,22 @@ def floor_question(scenario: Scenario, law: Law, seen: RunFigures, *, search: bo
         run_floor=None if seen.floor is None else (seen.floor, float(scenario.horizon)),
         run_peak=seen.peak,
         search=Search(samples=64, rounds=2, local=24, seed=scenario.check.seed) if search else None,
+    )
+
+
+def robust_question(scenario: Scenario, law: Law) -> RobustQuestion:
+    """Put the same question about every body of the scenario's uncertainty."""
+    bounds = scenario.initial_set
+    return RobustQuestion(
+        law=law,
+        body=scenario.body,
+        schedule=scenario.schedule,
+        uncertainty=scenario.uncertainty,
+        max_angle_deg=bounds.max_angle_deg,
+        max_rate=bounds.max_rate,
+        max_weighted_rate=bounds.max_weighted_rate,
+        attitude=scenario.tolerance.attitude,
+        rate=scenario.tolerance.rate,
     )
 
 

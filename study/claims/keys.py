@@ -35,6 +35,7 @@ class ClaimKey:
 
 
 PAPER = "Ram & Akella, AAS 21-402"
+_ROBUST = "docs/theory-robust.md"
 _SCHEDULE, _FLOOR, _LYAPUNOV = "docs/schedule.md", "docs/theory-floor.md", "docs/theory-lyapunov.md"
 
 CLAIM_KEYS: dict[str, ClaimKey] = {
@@ -199,6 +200,39 @@ CLAIM_KEYS: dict[str, ClaimKey] = {
             "one run from the set, enclosed in ball arithmetic.",
             "this package, docs/theory-floor.md",
             _FLOOR,
+            by_law=True,
+            counts=True,
+        ),
+        ClaimKey(
+            "robust.floor",
+            "R stays above a floor on every body",
+            "R(t) >= R_min > 0 from every start in the initial set, for every body, thruster and disturbance "
+            "of [uncertainty]; the controller computes with the inertia of [spacecraft] and its own g.",
+            "Comparison systems whose constants hold for every body, integrated with outward rounding.",
+            "this package, docs/theory-robust.md",
+            _ROBUST,
+            by_law=True,
+            counts=True,
+        ),
+        ClaimKey(
+            "robust.convergence",
+            "attitude and rate converge on every body",
+            "The error angle and the rate go to zero from every start, for every body and thruster of "
+            "[uncertainty], where no disturbance acts.",
+            "The same comparison systems over one period that repeats, scaled down.",
+            "this package, docs/theory-robust.md",
+            _ROBUST,
+            by_law=True,
+            counts=True,
+        ),
+        ClaimKey(
+            "robust.ultimate",
+            "attitude and rate stay within a bound on every body",
+            "From some time on the error angle and the rate stay within a bound, for every body, thruster "
+            "and disturbance of [uncertainty].",
+            "The same comparison systems over one period that repeats.",
+            "this package, docs/theory-robust.md",
+            _ROBUST,
             by_law=True,
             counts=True,
         ),

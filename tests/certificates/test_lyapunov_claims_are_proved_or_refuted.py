@@ -155,7 +155,7 @@ def test_law_without_storage_is_undecided():
     assert "[check] claims" in claim.next_step  # a built-in law cannot be given one
 
 
-def test_a_users_law_without_storage_is_told_where_to_return_one():
+def test_a_law_without_storage_is_told_where_to_return_one():
     @dataclasses.dataclass(frozen=True)
     class Mine(Law):
         name = "mine"

@@ -123,7 +123,7 @@ def test_its_optimum_is_above_its_bound_and_the_other_solvers(norm):
     assert other.peak == pytest.approx(found.peak, rel=1e-3)
 
 
-def test_its_momentum_bound_is_proved_and_its_certificate_refused():
+def test_its_bound_is_proved_and_its_certificate_refused():
     spinning = replace(two_windows(DISC), rate=(F(1, 20), F(-1, 10), F(1, 20)))
     corners = max(sum(x * x for x in point) for point in DISC.corners())
     momenta = invariant_set(J1, DISC)
@@ -134,7 +134,7 @@ def test_its_momentum_bound_is_proved_and_its_certificate_refused():
     assert peak_certificate(replace(spinning, norm=LARGEST_COMPONENT), bound) is not None
 
 
-def test_its_optimum_lies_between_those_of_the_cube_and_the_ball():
+def test_its_optimum_lies_between_cube_and_ball():
     peaks = []
     for norm in (LARGEST_COMPONENT, DISC, EUCLIDEAN):
         problem = replace(paper_transfer(EUCLIDEAN, horizon="11.22"), norm=norm)

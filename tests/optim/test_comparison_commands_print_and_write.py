@@ -54,7 +54,7 @@ def test_compare_orders_every_row_and_takes_a_law_of_ones_own(scenario, tmp_path
 SHORT = "\n[simulation]\nhorizon = 10\n"
 
 
-def test_a_law_that_does_not_settle_is_said_and_not_called_compared(scenario, tmp_path, capsys):
+def test_a_law_that_does_not_settle_is_not_called_compared(scenario, tmp_path, capsys):
     """Partner: the same law over the paper's horizon is compared, exit code 0, above."""
     out = tmp_path / "compare.json"
     scenario.write_text(SMALL + SHORT)
@@ -67,7 +67,7 @@ def test_a_law_that_does_not_settle_is_said_and_not_called_compared(scenario, tm
 
 
 @pytest.mark.slow
-def test_a_law_that_does_not_settle_is_compared_with_coming_as_near(scenario, tmp_path, capsys):
+def test_a_law_that_does_not_settle_is_compared_as_near(scenario, tmp_path, capsys):
     out = tmp_path / "compare.json"
     scenario.write_text(SMALL + SHORT)
     assert run(["compare", str(scenario), "--at-horizon", "--json", str(out)]) == 0

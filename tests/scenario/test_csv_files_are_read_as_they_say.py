@@ -63,7 +63,7 @@ def test_what_spreadsheets_write_is_read_exactly(read, text):
     assert read(text) == WINDOWS
 
 
-def test_utf_16_is_read_by_its_mark_and_other_encodings_are_refused(read):
+def test_utf_16_is_read_by_its_mark_others_are_refused(read):
     text = "on [µs],off [µs]\n10000,3210000\n8010000,11210000\n"
     assert read(text, encoding="utf-16") == read(text, encoding="utf-8-sig") == WINDOWS
     for encoding in ("latin-1", "utf-32"):

@@ -15,7 +15,7 @@ from ..exact.ball import sqrt_above
 from ..filter.certify import FloorOptions
 from ..filter.comparison import BodyBounds
 from ..filter.flowpipe import Flowpipe
-from ..filter.recognise import ComparedLaw, compared_law
+from ..filter.recognise import ComparedLaw, NoComparisonError, compared_law, law_words
 from ..filter.sets import InitialSet
 from .bodies import BodyBin, body_bins
 from .certify import OPTIONS, robust_flowpipe
@@ -118,6 +118,10 @@ def certify_robust_floor(question: RobustQuestion) -> RobustFloor:
     """
     q = question
     known = compared_law(q.law)
+    if known.adaptive:
+        raise NoComparisonError(
+            f"{law_words(q.law)} learns its gain: for an unknown body only kappa = 1/R has its inequalities"
+        )
     piece = next(q.schedule.profile.pieces)
     g = piece.shape[0] if piece.shape else Fraction(0)
     gain_term = g * g / known.initial_filter

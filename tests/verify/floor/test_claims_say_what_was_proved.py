@@ -51,7 +51,7 @@ def test_torque_limit_below_the_bound_is_undecided():
     assert f"the bound is {bound / 12.05:.2g} times it" in claim.reason
 
 
-def test_the_largest_torque_of_the_search_stands_beside_the_bound():
+def test_the_torque_of_the_search_stands_beside_the_bound():
     found = answer(replace(QUESTION, torque_limit=F(5), run_peak=0.5, search=Search(samples=16, rounds=0)))
     assert found.worst.peak[EUCLIDEAN] >= found.worst.peak[LARGEST_COMPONENT] > 0.5
     assert (
@@ -61,7 +61,7 @@ def test_the_largest_torque_of_the_search_stands_beside_the_bound():
 
 
 @pytest.mark.parametrize("decay", [F(100_000), F(10) ** 12])
-def test_a_filter_that_forgets_within_a_gap_is_undecided_with_the_exponent(decay):
+def test_a_filter_that_forgets_within_a_gap_is_undecided(decay):
     """Partner: the paper's own lambda, whose exponent is 2.5, is proved above."""
     fast = replace(QUESTION, law=replace(PERSISTENCE, lambda_=decay), torque_limit=F(5))
     found = answer(fast)

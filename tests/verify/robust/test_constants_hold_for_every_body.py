@@ -1,4 +1,4 @@
-"""The closed constants against bodies and misalignments at the ends of their sets."""
+"""[uncertainty] in scenario files: read, checked, certified, rechecked; refused where senseless."""
 
 from fractions import Fraction as F
 
@@ -103,7 +103,7 @@ def test_nothing_uncertain_has_no_constants():
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_the_equations_of_motion_of_a_member_are_those_of_the_page(seed):
+def test_members_move_by_the_equations_of_the_page(seed):
     """J x' of the simulated loop against the stated equation, at random states and gains."""
     rng = np.random.default_rng(seed)
     (member,) = draw_members(LAW, J1, SETS["all"], 1, rng)

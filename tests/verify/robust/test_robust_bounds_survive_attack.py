@@ -1,4 +1,4 @@
-"""Robust bounds against members at the ends of what is allowed: nothing flown may cross them."""
+"""[uncertainty] in scenario files: read, checked, certified, rechecked; refused where senseless."""
 
 import pytest
 from intermit.verify.robust.answer import certify_robust_floor

@@ -1,4 +1,4 @@
-"""The stand-alone checker on robust floors: valid as written, refused when any number or word is another."""
+"""[uncertainty] in scenario files: read, checked, certified, rechecked; refused where senseless."""
 
 import json
 from fractions import Fraction as F

@@ -1,4 +1,4 @@
-"""Robust floors of the paper's example: known values, the nominal limit, what is refused."""
+"""[uncertainty] in scenario files: read, checked, certified, rechecked; refused where senseless."""
 
 from fractions import Fraction as F
 from math import degrees
@@ -61,7 +61,7 @@ def test_a_disturbance_ends_in_a_bound_in_proportion_to_it():
     assert angles[1] / angles[0] == pytest.approx(2, rel=0.02)
 
 
-def test_a_constant_torque_comes_near_the_bound_of_every_disturbance():
+def test_a_constant_torque_comes_near_the_bound():
     q = question(disturbance=F(1, 100))
     floor = certify_robust_floor(q)
     worst = attack(q, floor, runs=16, periods=9, seed=2)
@@ -80,7 +80,7 @@ def test_too_much_is_not_proved():
     assert certify_robust_floor(question(inertia_relative=F(15, 100))).failed_at is not None
 
 
-def test_a_tolerance_that_reaches_a_singular_inertia_is_refused():
+def test_a_tolerance_of_a_singular_inertia_is_refused():
     tolerance = ((F(3), F(0), F(0)), (F(0), F(3), F(0)), (F(0), F(0), F(3)))
     with pytest.raises(ValueError, match="singular"):
         certify_robust_floor(question(inertia_tolerance=tolerance))
