@@ -6,9 +6,10 @@ claim, never a claim of its own, and never makes PROVED.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any, Literal, final
+from typing import Literal, final
 
 
 class Verdict(Enum):
@@ -90,7 +91,7 @@ class Evidence:
     kind: EvidenceKind
     summary: str
     source: str = ""
-    details: dict[str, Any] = field(default_factory=dict)
+    details: Mapping[str, object] = field(default_factory=dict)
 
 
 @final

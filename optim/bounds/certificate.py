@@ -9,7 +9,6 @@ with its rate. The stand-alone checker repeats the branch and bound; it shares n
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Any
 
 from ...models.norms import EUCLIDEAN, LARGEST_COMPONENT, Norm
 from ...verify import checker
@@ -41,7 +40,7 @@ def peak_certificate(problem: TransferProblem, bound: NamedBound) -> Certificate
         return None
     argument = bound.argument
     scale = _scale(problem, argument)
-    witness: dict[str, Any] = {"rows": _rows(argument.momenta, problem)}
+    witness: dict[str, object] = {"rows": _rows(argument.momenta, problem)}
     if isinstance(argument, MomentumArgument):
         end = _up(argument.momenta.size_of_rate(problem.terminal.rate) / scale[0])
         witness |= {"argument": "momentum", "end": end}
@@ -70,7 +69,7 @@ def largest_certificate(problem: TransferProblem, bound: LowerBound) -> tuple[Na
     return None
 
 
-def transfer_data(problem: TransferProblem) -> dict[str, Any]:
+def transfer_data(problem: TransferProblem) -> dict[str, object]:
     """What a lower bound speaks about, as certificates say it."""
     return {
         "inertia": problem.body.exact_inertia,
@@ -91,7 +90,7 @@ def has_certificate(norm: Norm) -> bool:
     return norm.is_ball or norm.is_cube or only_thrusters
 
 
-def _torque(norm: Norm) -> dict[str, Any]:
+def _torque(norm: Norm) -> dict[str, object]:
     if norm.is_ball:
         return {"by": EUCLIDEAN.key}
     return {"by": LARGEST_COMPONENT.key} if norm.is_cube else {"by": "thrusters", "axes": norm.axes}
@@ -141,7 +140,7 @@ def _allowing(
     argument: PathArgument,
     scale: tuple[Fraction, Fraction],
     travel: Fraction,
-    witness: dict[str, Any],
+    witness: dict[str, object],
 ) -> Fraction:
     """Peak that the path argument gives with a travel rounded down; enters instant and end in the witness."""
     start = _up(argument.momenta.size_above(start_momentum(problem)) / scale[0])
@@ -162,7 +161,7 @@ def _allowing(
     return found.value
 
 
-def _component_witness(argument: ComponentsArgument) -> dict[str, Any]:
+def _component_witness(argument: ComponentsArgument) -> dict[str, object]:
     bounds = argument.bounds
     return {
         "argument": "components",
@@ -175,12 +174,12 @@ def _component_witness(argument: ComponentsArgument) -> dict[str, Any]:
     }
 
 
-def _separations(problem: TransferProblem, path: PathBound, scale: Fraction) -> list[dict[str, Any]]:
+def _separations(problem: TransferProblem, path: PathBound, scale: Fraction) -> list[dict[str, object]]:
     found = dict(path.separations)
     return [_separation(found[sign], scale) for sign in problem.signs]
 
 
-def _separation(proof: Separation | None, scale: Fraction) -> dict[str, Any]:
+def _separation(proof: Separation | None, scale: Fraction) -> dict[str, object]:
     if proof is None:
         return {"by": "angle"}
     chart = proof.chart

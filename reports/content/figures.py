@@ -82,7 +82,7 @@ def pdf_figures(svgs: Mapping[str, bytes]) -> dict[str, bytes]:
     import typst
 
     page = "#set page(width: auto, height: auto, margin: 0pt, fill: none)\n"
-    options: dict[str, Any] = {"pdf_standards": "1.4", "pdf_tags": False, "ignore_system_fonts": True}
+    options: Any = {"pdf_standards": "1.4", "pdf_tags": False, "ignore_system_fonts": True}
     out: dict[str, bytes] = {}
     with tempfile.TemporaryDirectory() as folder:
         source = Path(folder) / "figure.typ"

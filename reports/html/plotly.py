@@ -28,7 +28,7 @@ def packed(values: Array) -> str:
     return base64.b64encode(np.clip(values, -limit, limit).astype("<f4").tobytes()).decode("ascii")
 
 
-def figure(chart: Chart) -> dict[str, Any]:
+def figure(chart: Chart) -> dict[str, object]:
     """One chart: traces, axes and windows; colours are indices the page resolves for its theme."""
     arrays: dict[int, str] = {}
     data: list[str] = []
@@ -40,11 +40,12 @@ def figure(chart: Chart) -> dict[str, Any]:
         return arrays[id(values)]
 
     traces = [t for line in chart.lines for t in _traces(line, place)]
-    layout: dict[str, Any] = {"xaxis": _axis(chart.x), "yaxis": _axis(chart.y)}
+    y = _axis(chart.y)
     if chart.y.log and (ticks := log_ticks(chart)):
-        layout["yaxis"] |= {"tickvals": list(ticks), "ticktext": [f"{t:g}" for t in ticks]}
+        y |= {"tickvals": list(ticks), "ticktext": [f"{t:g}" for t in ticks]}
     if chart.reach is not None and not chart.y.log:
-        layout["yaxis"]["range"] = list(chart.reach)
+        y["range"] = list(chart.reach)
+    layout = {"xaxis": _axis(chart.x), "yaxis": y}
     return {
         "key": chart.key,
         "traces": traces,
@@ -55,12 +56,12 @@ def figure(chart: Chart) -> dict[str, Any]:
     }
 
 
-def _axis(axis: Axis) -> dict[str, Any]:
+def _axis(axis: Axis) -> dict[str, object]:
     title = escape(axis.label) + (f" ({escape(unit_text(axis.unit))})" if axis.unit else "")
     return {"title": {"text": title}, "type": "log" if axis.log else "linear", "hoverformat": ".6~g"}
 
 
-def _traces(line: Line, place: Any) -> list[dict[str, Any]]:
+def _traces(line: Line, place: Any) -> list[dict[str, object]]:
     base = {"name": escape(line.label), "x": place(line.x), "colour": line.colour % COLOURS}
     dash = "dash" if line.dashed else DASHES[(line.colour // COLOURS) % len(DASHES)]
     if line.style == "bars":

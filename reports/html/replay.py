@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from ..content.blocks import Body, Replay
@@ -14,7 +12,7 @@ FRAMES = 600
 """Instants kept per body; the page interpolates on the sphere between them."""
 
 
-def replay_data(replay: Replay) -> dict[str, Any]:
+def replay_data(replay: Replay) -> dict[str, object]:
     """Bodies, windows and the box the body is drawn as."""
     return {
         "bodies": [_body(b) for b in replay.bodies],
@@ -24,9 +22,9 @@ def replay_data(replay: Replay) -> dict[str, Any]:
     }
 
 
-def _body(body: Body) -> dict[str, Any]:
+def _body(body: Body) -> dict[str, object]:
     index = np.unique(np.linspace(0, len(body.time) - 1, min(FRAMES, len(body.time))).round().astype(int))
-    out: dict[str, Any] = {"label": short(visible(body.label), 80), "time": packed(body.time[index])}
+    out: dict[str, object] = {"label": short(visible(body.label), 80), "time": packed(body.time[index])}
     out["quaternion"] = packed(body.quaternion[index].ravel())
     if body.torque is not None:
         out["torque"] = packed(body.torque[index].ravel())

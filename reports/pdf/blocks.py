@@ -57,7 +57,7 @@ def _breakable(word: str) -> str:
     return "\u200b".join(word[i : i + BREAK_EVERY] for i in range(0, len(word), BREAK_EVERY))
 
 
-def cell(value: Cell, column_unit: str = "") -> dict[str, Any]:
+def cell(value: Cell, column_unit: str = "") -> dict[str, object]:
     """One cell: its text and how it is set."""
     if value is None:
         return {"text": "–"}
@@ -80,7 +80,7 @@ def cell(value: Cell, column_unit: str = "") -> dict[str, Any]:
 
 
 @singledispatch
-def spoken(block: Block, names: FullNames) -> dict[str, Any] | None:
+def spoken(block: Block, names: FullNames) -> dict[str, object] | None:
     """Turn a block into data for the template; the replay has no place on paper."""
     del names
     raise TypeError(f"no rule to print a {type(block).__name__}")
@@ -92,12 +92,12 @@ def _(block: Replay, names: FullNames) -> None:
 
 
 @spoken.register
-def _(block: Text, names: FullNames) -> dict[str, Any]:
+def _(block: Text, names: FullNames) -> dict[str, object]:
     return {"kind": "text", "text": words(names.within(block.text)), "style": block.kind}
 
 
 @spoken.register
-def _(block: Cards, names: FullNames) -> dict[str, Any]:
+def _(block: Cards, names: FullNames) -> dict[str, object]:
     labels = {q.name: words(names.brief(q.words)) for c in block.cards for q in c.numbers}
     rows = []
     for card in block.cards:
@@ -109,7 +109,7 @@ def _(block: Cards, names: FullNames) -> dict[str, Any]:
 
 
 @spoken.register
-def _(block: Verdicts, names: FullNames) -> dict[str, Any]:
+def _(block: Verdicts, names: FullNames) -> dict[str, object]:
     groups = [
         {"label": words(names.brief(g.label)), "claims": [_claim(c, names) for _, c in held]}
         for g in block.groups
@@ -118,7 +118,7 @@ def _(block: Verdicts, names: FullNames) -> dict[str, Any]:
     return {"summary": words(block.summary), "kind": "verdicts", "groups": groups}
 
 
-def _claim(claim: ClaimEntry, names: FullNames) -> dict[str, Any]:
+def _claim(claim: ClaimEntry, names: FullNames) -> dict[str, object]:
     def brief(text: str) -> str:
         return words(names.brief(text))
 
@@ -138,7 +138,7 @@ def _claim(claim: ClaimEntry, names: FullNames) -> dict[str, Any]:
 
 
 @spoken.register
-def _(block: ClaimDetails, names: FullNames) -> dict[str, Any]:
+def _(block: ClaimDetails, names: FullNames) -> dict[str, object]:
     groups = [
         {"label": words(names.brief(g.label)), "claims": [_details(c, names) for c in g.claims]}
         for g in block.groups
@@ -146,8 +146,8 @@ def _(block: ClaimDetails, names: FullNames) -> dict[str, Any]:
     return {"kind": "details", "groups": groups}
 
 
-def _details(claim: ClaimEntry, names: FullNames) -> dict[str, Any]:
-    rows: list[tuple[str, dict[str, Any]]] = [("Key", {"code": words(claim.key)})]
+def _details(claim: ClaimEntry, names: FullNames) -> dict[str, object]:
+    rows: list[tuple[str, dict[str, object]]] = [("Key", {"code": words(claim.key)})]
     rows += [(_label(q, names), cell(q)) for q in claim.quantities]
     rows += [("Margin: " + _label(q, names), cell(q)) for q in claim.margins]
     for e in claim.evidence:
@@ -182,13 +182,13 @@ def _label(quantity: QuantityEntry, names: FullNames, otherwise: str = "") -> st
 
 
 @spoken.register
-def _(block: Facts, names: FullNames) -> dict[str, Any]:
+def _(block: Facts, names: FullNames) -> dict[str, object]:
     rows = [[words(names.brief(label)), cell(v)] for label, v in block.rows]
     return {"kind": "facts", "title": words(names.brief(block.title)), "rows": rows}
 
 
 @spoken.register
-def _(block: Table, names: FullNames) -> dict[str, Any]:
+def _(block: Table, names: FullNames) -> dict[str, object]:
     heads = [
         words(names.brief(label)) + (f" ({words(names.brief(unit_text(unit), 40))})" if unit else "")
         for _, label, unit in block.columns
@@ -210,7 +210,7 @@ def _length(shown: Mapping[str, Any]) -> int:
     return len(badge) + len(shown.get("text", "")) + len(code) * 5 // 4
 
 
-def _table_cell(value: Cell, unit: str, names: FullNames) -> dict[str, Any]:
+def _table_cell(value: Cell, unit: str, names: FullNames) -> dict[str, object]:
     """Set a cell of a narrow column: a long text is marked."""
     if isinstance(value, str):
         return {"text": words(names.brief(value))}
@@ -220,19 +220,19 @@ def _table_cell(value: Cell, unit: str, names: FullNames) -> dict[str, Any]:
 
 
 @spoken.register
-def _(block: Equations, names: FullNames) -> dict[str, Any]:
+def _(block: Equations, names: FullNames) -> dict[str, object]:
     del names
     held = [{"title": e.title, "typst": e.typst, "alt": e.latex} for e in block.equations]
     return {"kind": "equations", "equations": held}
 
 
 @spoken.register
-def _(block: Verbatim, names: FullNames) -> dict[str, Any]:
+def _(block: Verbatim, names: FullNames) -> dict[str, object]:
     return {"kind": "verbatim", "title": words(names.brief(block.title)), "text": words(block.text)}
 
 
 @spoken.register
-def _(block: Charts, names: FullNames) -> dict[str, Any]:
+def _(block: Charts, names: FullNames) -> dict[str, object]:
     charts = [
         {
             "file": f"{c.key}.svg",

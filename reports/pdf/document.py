@@ -31,17 +31,17 @@ def pdf_document(heading: Heading, chapters: tuple[Chapter, ...], drawings: Mapp
         for name, drawing in drawings.items():
             if name.endswith(".svg"):
                 (root / name).write_bytes(drawing)
-        options: dict[str, Any] = {"ignore_system_fonts": True, "font_paths": list(font_folders())}
+        options: Any = {"ignore_system_fonts": True, "font_paths": list(font_folders())}
         document: bytes = typst.compile(
             root / "report.typ", root=root, format="pdf", timestamp=_instant(heading.date), **options
         )
     return document
 
 
-def _data(heading: Heading, chapters: tuple[Chapter, ...]) -> dict[str, Any]:
+def _data(heading: Heading, chapters: tuple[Chapter, ...]) -> dict[str, object]:
     """Everything the template shows; names that were cut stand whole in a last chapter."""
     names = FullNames()
-    shown: dict[str, Any] = {
+    shown: dict[str, object] = {
         "title": words(names.brief(heading.title)),
         "running": words(short(heading.title, 90)),
         "answer": words(names.brief(heading.sentence)),

@@ -82,27 +82,28 @@ class _Known:
     resets: bool
 
     @classmethod
-    def of(cls, scenario: Scenario, law: Law | None, transfers: Sequence[Mapping[str, Any]]) -> _Known:
+    def of(cls, scenario: Scenario, law: Law | None, transfers: Sequence[object]) -> _Known:
         """Put together what certificates may say."""
-        data: dict[str, Any] = {"schedule": schedule_data(scenario.schedule)}
+        data: dict[str, object] = {"schedule": schedule_data(scenario.schedule)}
         data |= windows_data(scenario.schedule)
         data |= inertia_data(scenario.body.exact_inertia, scenario.inertia_tolerance)
         data["uncertainty"] = uncertainty_data(scenario.uncertainty)
         if scenario.linear is not None:
             data |= plant_data(scenario.linear)
         form = compared = None
-        start: dict[str, Any] = {}
+        start: dict[str, object] = {}
         if law is not None:
             loop = close_loop(law)
             data["initial_set"] = set_data(floor_question(scenario, law, RunFigures(), search=False))
             data["parameters"] = law.parameters
-            data["initial"] = {state.name: state.initial for state in law.controller_states}
+            initial = {state.name: state.initial for state in law.controller_states}
+            data["initial"] = initial
             with suppress(NotAlgebraicError):  # such a law has no certificate that writes it out
                 form = law_form(loop)
             with suppress(NoComparisonError):
                 compared = compared_law(law)
             if follows_filter(loop):
-                start = {"lambda": law.parameters["lambda"], "R0": data["initial"]["R"]}
+                start = {"lambda": law.parameters["lambda"], "R0": initial["R"]}
         resets = law is not None and has_resets(law)
         return cls(
             scenario, as_text(data), as_text(transfers), as_text(form) if form is not None else None,

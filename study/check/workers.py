@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from heapq import heappop, heappush
 from multiprocessing import get_context
@@ -19,9 +19,10 @@ from typing import Any, final
 
 from ...models.types import Progress
 from ...scenario import LawChoice, Scenario
+from ...verify.verdict import Quantity
 from ..pool import ignore_interrupt, starting_workers
 from ..simulated_run import RunFigures
-from .case import CaseOptions, Decided, Findings, decide, findings, margins, samples
+from .case import CaseOptions, Decided, Findings, Sampled, decide, findings, margins, samples
 
 START = 0.1
 """Share of a check that is done before the jobs begin."""
@@ -39,11 +40,21 @@ class _Job:
     label: str
     scenario: Scenario
     choice: LawChoice
-    found: dict[str, Any] = field(default_factory=dict)
+    decided: Decided | None = None
+    margins: tuple[Quantity, ...] | None = None
+    samples: Sampled | None = None
+
+    @property
+    def is_done(self) -> bool:
+        """Whether every part that is asked of it was found."""
+        if self.decided is None or self.samples is None:
+            return False
+        return self.margins is not None or not self.decided.has_margins
 
     def findings(self) -> Findings:
         """All parts together."""
-        return findings(self.found["proofs"], self.found.get("margins", ()), self.found["samples"])
+        assert self.decided is not None and self.samples is not None  # noqa: PT018
+        return findings(self.decided, self.margins or (), self.samples)
 
 
 @final
@@ -70,7 +81,7 @@ class WorkerPool:
 
     def findings(self) -> list[Findings]:
         """Work until all is found; findings in the order in which the laws were handed over."""
-        while any("samples" not in job.found or self._lacks_margins(job) for job in self._jobs):
+        while not all(job.is_done for job in self._jobs):
             task = self._take()
             if task is not None:
                 part, number, arguments = task
@@ -84,11 +95,6 @@ class WorkerPool:
             if failure is not None:
                 raise failure
         return [job.findings() for job in self._jobs]
-
-    @staticmethod
-    def _lacks_margins(job: _Job) -> bool:
-        decided: Decided | None = job.found.get("proofs")
-        return decided is None or (decided.has_margins and "margins" not in job.found)
 
     def _put(self, part: str, number: int, *arguments: Any) -> None:
         heappush(self._ready, (list(PARTS).index(part), number, arguments))
@@ -123,8 +129,12 @@ class WorkerPool:
         """Keep what was found, and hand out what can now be done."""
         job = self._jobs[number]
         with self._lock:
-            job.found[part] = result
-            if part == "proofs":
+            if part == "margins":
+                job.margins = result
+            elif part == "samples":
+                job.samples = result
+            else:
+                job.decided = result
                 if result.has_margins:
                     self._put("margins", number, job.scenario, job.choice)
                 self._put("samples", number, job.scenario, job.choice, result.reference_floor)

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, final
+from typing import TYPE_CHECKING, final
 
 from ...models.norms import NORMS
 from ...reports.content.blocks import Axis, Chart
@@ -132,7 +131,7 @@ def below(value: float) -> str:
     return f"{digits_below(value, 7).normalize():g}"
 
 
-def transfers_data(scenario: Scenario) -> list[Mapping[str, Any]]:
+def transfers_data(scenario: Scenario) -> list[object]:
     """The scenario's transfers in every norm, as certificates say them."""
     from ...optim.bounds.certificate import transfer_data
 

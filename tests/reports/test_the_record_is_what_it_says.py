@@ -153,6 +153,77 @@ def test_what_is_not_a_record_is_refused(tmp_path: Path, text: str) -> None:
         read_record(tmp_path / "results.json")
 
 
+QUANTITY = {"name": "floor", "low": 0.1, "high": "inf", "unit": "s", "label": "floor", "rigorous": True}
+EARLIER = {
+    "format": "intermit-record",
+    "version": 1,
+    "title": "Check of paper",
+    "provenance": {
+        "package_version": "0.0.9",
+        "command": "intermit check paper.toml",
+        "author": "",
+        "scenario_name": "paper",
+        "scenario_text": "",
+        "input_sha256": "0",
+        "date": "",
+        "versions": {"numpy": "2.0"},
+        "seeds": {"derivative samples": 1},
+        "options": {"samples": 100, "claims": []},
+        "effort": [{"label": "right-hand sides", "count": 3}],
+    },
+    "outcome": {"exit_code": 0, "sentence": "1 claim holds."},
+    "arrays": {},
+    "sections": {
+        "scenario": {"name": "paper", "facts": [{"label": "inertia", "matrix": [[1.0]], "unit": "kg m^2"}]},
+        "cases": [
+            {
+                "key": "law1",
+                "label": "Adaptive",
+                "law": "adaptive-scaling",
+                "parameters": [QUANTITY],
+                "certificates": [{"key": "c", "label": "bounds", "quantities": [QUANTITY], "notes": []}],
+            }
+        ],
+        "comparison": {
+            "tables": [
+                {
+                    "key": "laws",
+                    "title": "Laws",
+                    "columns": [{"key": "law", "label": "law", "unit": ""}],
+                    "rows": [{"law": "a"}, {"law": None}, {"law": QUANTITY}, {"law": {"code": "x"}}],
+                    "notes": [],
+                }
+            ]
+        },
+    },
+}
+"""A record as the release before wrote it: no equations, no bounds of speed and torque."""
+
+
+def written_as(document: dict, folder: Path) -> Path:
+    path = folder / "results.json"
+    path.write_text(json.dumps(document, sort_keys=True, indent=1, ensure_ascii=False) + "\n")
+    return path
+
+
+def test_a_record_of_the_release_before_opens_and_is_written_as_it_was(tmp_path: Path) -> None:
+    path = written_as(EARLIER, tmp_path)
+    record = read_record(path)
+    assert record.sections.cases[0].parameters[0].high == float("inf")
+    assert record.to_json() == path.read_text()
+
+
+def test_one_that_does_not_fit_is_refused_with_its_version_and_the_remedy(tmp_path: Path) -> None:
+    unknown = copy.deepcopy(EARLIER)
+    unknown["sections"]["appendix"] = {}  # type: ignore[index]
+    with pytest.raises(RecordError) as refused:
+        read_record(written_as(unknown, tmp_path))
+    said = str(refused.value)
+    assert "record.sections: unknown key 'appendix'" in said
+    assert "written by intermit 0.0.9 (format version 1): write it again with this version" in said
+    assert "\n" not in said
+
+
 def test_provenance_takes_the_date_from_the_user_or_the_source(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
     assert source_date() == ""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
 from itertools import pairwise
-from typing import Any
 
 from ...models.laws import Law
 from ...models.schedule import Schedule
@@ -45,7 +44,7 @@ def filter_start_certificate(schedule: Schedule, law: Law) -> Certificate | None
     return _accepted(Certificate("filter-start-counterexample", data, claim))
 
 
-def windows_data(schedule: Schedule) -> dict[str, Any]:
+def windows_data(schedule: Schedule) -> dict[str, object]:
     """Thruster windows and the times in which its thrust is uncertain, as certificate data."""
     return {
         "windows": [(window.on, window.off) for window in schedule.windows],
@@ -60,7 +59,7 @@ def _accepted(certificate: Certificate | None) -> Certificate | None:
     return certificate if all(finding.valid for finding in findings) else None
 
 
-def _data(timeline: Timeline, *names: str) -> dict[str, Any]:
+def _data(timeline: Timeline, *names: str) -> dict[str, object]:
     known = windows_data(timeline.schedule)
     return {"schedule": schedule_data(timeline.schedule)} | {name: known[name] for name in names}
 

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from ...models.schedule import Schedule
 
 
-def schedule_data(schedule: Schedule) -> dict[str, Any]:
+def schedule_data(schedule: Schedule) -> dict[str, object]:
     """The gain profile: knots, the distinct shapes, which shape each piece has, and the period."""
     profile = schedule.profile
     shapes = list(dict.fromkeys(profile.shapes))
     index = {shape: i for i, shape in enumerate(shapes)}
-    data: dict[str, Any] = {
+    data: dict[str, object] = {
         "knots": profile.knots,
         "shapes": shapes,
         "pieces": [index[shape] for shape in profile.shapes],

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from math import frexp
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ...models.closed_loop import close_loop
 from ..certificates.format import Certificate
@@ -46,7 +46,7 @@ def floor_certificate(
         Its bound of |g u| is claimed too.
     """
     q, data = question, question_data(question)
-    claim: dict[str, Any] = {"floor": Fraction(floor.value)}
+    claim: dict[str, object] = {"floor": Fraction(floor.value)}
     tails = [w.tail for w in floor.flowpipes]
     if floor.horizon is not None:
         claim["horizon"] = floor.horizon
@@ -62,7 +62,7 @@ def floor_certificate(
     return Certificate(KIND, data, claim, _flowpipes(floor))
 
 
-def question_data(question: FloorQuestion) -> dict[str, Any]:
+def question_data(question: FloorQuestion) -> dict[str, object]:
     """What a floor's claims speak about: body, the law's equations and start, schedule and initial set.
 
     Raises
@@ -71,7 +71,7 @@ def question_data(question: FloorQuestion) -> dict[str, Any]:
         If the law uses more than + - * /.
     """
     q = question
-    data: dict[str, Any] = {
+    data: dict[str, object] = {
         "inertia": q.body.exact_inertia,
         "law": law_form(close_loop(q.law)),
         "parameters": q.law.parameters,
@@ -84,7 +84,7 @@ def question_data(question: FloorQuestion) -> dict[str, Any]:
     return data
 
 
-def set_data(question: FloorQuestion) -> dict[str, Any]:
+def set_data(question: FloorQuestion) -> dict[str, object]:
     """Write down the initial set; a bound that it does not have is left out."""
     q = question
     bounds = {
@@ -95,7 +95,7 @@ def set_data(question: FloorQuestion) -> dict[str, Any]:
     return {name: value for name, value in bounds.items() if value is not None}
 
 
-def _flowpipes(floor: FilterLowerBound) -> dict[str, Any]:
+def _flowpipes(floor: FilterLowerBound) -> dict[str, object]:
     return {
         "coupling": Fraction(floor.bounds.coupling),
         "greatest_inertia": floor.bounds.greatest,
@@ -104,9 +104,9 @@ def _flowpipes(floor: FilterLowerBound) -> dict[str, Any]:
     }
 
 
-def _bin(witness: Flowpipe) -> dict[str, Any]:
+def _bin(witness: Flowpipe) -> dict[str, object]:
     i = witness.initial
-    entry: dict[str, Any] = {
+    entry: dict[str, object] = {
         "s": [Fraction(i.s_low), Fraction(i.s_high)],
         "y": [Fraction(i.y_low), Fraction(i.y_high)],
         "steps": _steps(witness.steps),
@@ -117,7 +117,7 @@ def _bin(witness: Flowpipe) -> dict[str, Any]:
     return entry
 
 
-def _steps(steps: Iterable[Step]) -> list[dict[str, Any]]:
+def _steps(steps: Iterable[Step]) -> list[dict[str, object]]:
     return [
         {
             "until": step.stop,

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from math import degrees, isfinite
-from typing import Any, final
+from typing import final
 
 from ...models.norms import Norm
 from ..certificates.format import Certificate
@@ -276,7 +276,7 @@ def _certificate(facts: FloorFacts, floor: FilterLowerBound) -> Evidence:
         f"{len(floor.flowpipes)} polynomial sub- and supersolutions, {floor.steps} steps, every differential "
         "inequality proved by Bernstein coefficients in exact rationals"
     )
-    details: dict[str, Any] = {"steps": floor.steps}
+    details: dict[str, object] = {"steps": floor.steps}
     if facts.certificate is not None:
         details["certificate"] = facts.certificate
     return Evidence(EvidenceKind.CERTIFICATE, summary, source=MUELLER, details=details)

@@ -24,12 +24,12 @@ from ..exact.matrix import echelon, identity, of, rows, trace, zeros
 from ..exact.rational import rational
 
 
-def plant_data(plant: LinearPlant) -> dict[str, Any]:
+def plant_data(plant: LinearPlant) -> dict[str, object]:
     """The three matrices as certificate data."""
     return {"plant": dict(plant.exact)}
 
 
-def data_of(plant: LinearPlant) -> dict[str, Any]:
+def data_of(plant: LinearPlant) -> dict[str, object]:
     """The plant and its schedule as certificate data."""
     return plant_data(plant) | {"schedule": schedule_data(plant.schedule)}
 
@@ -70,7 +70,7 @@ def falling_function(plant: LinearPlant) -> Certificate | None:
     period, total = plant.schedule.period, mean_gain(plant)
     assert period is not None
     A, F = of(plant.exact["A"]), of(plant.exact["B"]) * of(plant.exact["K"])
-    tries: list[tuple[dict[str, Any], Any]] = []
+    tries: list[tuple[dict[str, object], Any]] = []
     if A * F == F * A:
         tries.append(({"form": "commuting"}, A * rational(period) - F * rational(total)))
     least, greatest = _gain_range(plant)

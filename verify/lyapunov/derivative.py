@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any, final
+from typing import final
 
 from .. import checker
 from ..certificates.format import Certificate, certificate_text
@@ -85,7 +85,7 @@ def certify_decay(
     except NotAlgebraicError as error:
         raise NoCertificateError(str(error)) from None
     data = {**inertia_data(inertia, tolerance), "law": law, "parameters": parameter_data(candidate.loop)}
-    claim: dict[str, Any] = {"storage": storage}
+    claim: dict[str, object] = {"storage": storage}
     claim["domain"] = "above floor" if candidate.floor is not None else "everywhere"
     if gain_bound is not None:
         claim["gain_bound"] = gain_bound
@@ -177,8 +177,8 @@ def _all_grams(problems: list[Problem], rate: Fraction) -> list[list[Term]] | No
 
 
 def _accepted(
-    data: dict[str, Any],
-    claim: dict[str, Any],
+    data: dict[str, object],
+    claim: dict[str, object],
     rate: Fraction,
     grams: list[list[Term]],
     names: tuple[str, ...],
@@ -192,7 +192,7 @@ def _accepted(
     return DecayCertificate(certificate, rate, finding.claim)
 
 
-def _term(common: Mapping[str, int], gram: Gram, names: tuple[str, ...]) -> dict[str, Any]:
+def _term(common: Mapping[str, int], gram: Gram, names: tuple[str, ...]) -> dict[str, object]:
     basis = [
         " ".join(name for name, e in zip(names, key, strict=True) for _ in range(e)) or "1"
         for key in gram.square.basis

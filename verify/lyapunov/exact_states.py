@@ -76,7 +76,7 @@ class ExactState:
         values |= {name: float(x) for name, x in self.controller.items()}
         return values | {"g": float(self.gain), "g_rate": float(self.gain_rate)}
 
-    def claimed(self, signals: Sequence[str]) -> dict[str, Any]:
+    def claimed(self, signals: Sequence[str]) -> dict[str, object]:
         """Exact coordinates as a certificate states them."""
         timed = dict(zip((x for name in signals for x in (name, f"{name}_rate")), self.signals, strict=True))
         return {

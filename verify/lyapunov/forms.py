@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
-from typing import Any
 
 import casadi as ca
 
@@ -28,7 +27,7 @@ def symbol_names(loop: ClosedLoop) -> dict[str, Expression]:
     return symbols | {name: loop.body[i] for i, name in enumerate(INERTIA_NAMES)}
 
 
-def law_form(loop: ClosedLoop) -> dict[str, Any]:
+def law_form(loop: ClosedLoop) -> dict[str, object]:
     """Law as certificate data: designated torque and controller rates as instructions.
 
     A name only annotates: it is written where the law is a built-in one.
@@ -55,7 +54,7 @@ def law_form(loop: ClosedLoop) -> dict[str, Any]:
 
 def storage_form(
     candidate: Candidate, *, weight: Fraction | None = None, identity: bool = False
-) -> dict[str, Any]:
+) -> dict[str, object]:
     """Storage function as part of a claim.
 
     Parameters
@@ -81,7 +80,7 @@ def storage_form(
     momentum = candidate.momentum_gradient
     lines = write_lines(symbols, [candidate.value, other, *([] if momentum is None else [momentum])])
     shift = write_lines({k: v for k, v in symbols.items() if k not in PLANT_STATES[4:]}, [candidate.shift])
-    form: dict[str, Any] = {
+    form: dict[str, object] = {
         "shift_program": list(shift.instructions),
         "shift": list(shift.results[0]),
         "program": list(lines.instructions),
@@ -97,9 +96,9 @@ def storage_form(
 
 def inertia_data(
     inertia: tuple[tuple[Fraction, ...], ...], tolerance: tuple[tuple[Fraction, ...], ...] | None
-) -> dict[str, Any]:
+) -> dict[str, object]:
     """Inertia, and its tolerance if any entry has one, as certificate data."""
-    data: dict[str, Any] = {"inertia": inertia}
+    data: dict[str, object] = {"inertia": inertia}
     if tolerance is not None and any(x > 0 for row in tolerance for x in row):
         data["inertia_tolerance"] = tolerance
     return data

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, final
+from typing import final
 
 from ...models.rigid_body import RigidBody
 from .. import checker
@@ -80,7 +80,7 @@ def counterexample(
     }
     signals = list(candidate.loop.time_symbols.signals)
     domain = "above floor" if candidate.floor is not None else "everywhere"
-    claim: dict[str, Any] = {"storage": storage, "domain": domain}
+    claim: dict[str, object] = {"storage": storage, "domain": domain}
     claim["state"] = refutation.state.claimed(signals)
     if "inertia_tolerance" in data:
         claim["inertia"] = refutation.inertia

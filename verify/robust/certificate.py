@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from fractions import Fraction
 from math import inf, nextafter
-from typing import Any
 
 from ...models.closed_loop import close_loop
 from ...models.uncertainty import Uncertainty
@@ -25,7 +24,7 @@ KIND = "robust-floor"
 def robust_certificate(floor: RobustFloor, found: Consequences) -> Certificate:
     """Certificate of R >= floor, and of what follows for angle and rate."""
     q = floor.question
-    claim: dict[str, Any] = {"floor": Fraction(floor.value)}
+    claim: dict[str, object] = {"floor": Fraction(floor.value)}
     if floor.horizon is not None:
         claim["horizon"] = floor.horizon
     elif found.ratio is not None:
@@ -55,7 +54,7 @@ def _above(value: float) -> float:
     return nextafter(value * (1 + 1e-11), inf)
 
 
-def robust_data(q: RobustQuestion) -> dict[str, Any]:
+def robust_data(q: RobustQuestion) -> dict[str, object]:
     """What the claims speak about: the loop that the controller knows, and what it does not know."""
     bounds = {
         "max_angle_deg": q.max_angle_deg,
@@ -73,7 +72,7 @@ def robust_data(q: RobustQuestion) -> dict[str, Any]:
     }
 
 
-def uncertainty_data(u: Uncertainty) -> dict[str, Any]:
+def uncertainty_data(u: Uncertainty) -> dict[str, object]:
     """The channels that are not nominal."""
     data = {name: getattr(u, name) for name in u.channels}
     if "thrust_error" in data:
@@ -81,21 +80,22 @@ def uncertainty_data(u: Uncertainty) -> dict[str, Any]:
     return data
 
 
-def _bin(part: BodyBin, pipe: Flowpipe) -> dict[str, Any]:
-    entry: dict[str, Any] = {
+def _bin(part: BodyBin, pipe: Flowpipe) -> dict[str, object]:
+    entry: dict[str, object] = {
         "scale": list(part.scale),
         "s": Fraction(pipe.initial.s_high),
         "y": Fraction(pipe.initial.y_high),
         "steps": _steps(pipe.steps),
     }
     if pipe.tail is not None:
-        entry["tail"] = {"steps": _steps(pipe.tail.steps)}
+        tail: dict[str, object] = {"steps": _steps(pipe.tail.steps)}
         if pipe.tail.ratios:
-            entry["tail"]["ratio"] = Fraction(max(pipe.tail.ratios.values()))
+            tail["ratio"] = Fraction(max(pipe.tail.ratios.values()))
+        entry["tail"] = tail
     return entry
 
 
-def _steps(steps: Iterable[Step]) -> list[dict[str, Any]]:
+def _steps(steps: Iterable[Step]) -> list[dict[str, object]]:
     return [
         {
             "until": step.stop,

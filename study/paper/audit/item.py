@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, final
 
@@ -122,11 +122,11 @@ def exact_values(
 def tilted_state(**changes: Any) -> ExactState:
     """Return a state of round rational numbers, off every symmetry, with chosen entries changed."""
     F = Fraction
-    values: dict[str, Any] = {
-        "quaternion": (F(1, 2), F(1, 2), F(1, 2), F(1, 2)),
-        "rate": (F(1, 5), F(-1, 10), F(3, 10)),
-        "controller": {"R": F(1, 2), "k": F(1, 4)},
-        "gain": F(1),
-        "gain_rate": F(1, 3),
-    }
-    return ExactState(**(values | changes))
+    state = ExactState(
+        quaternion=(F(1, 2), F(1, 2), F(1, 2), F(1, 2)),
+        rate=(F(1, 5), F(-1, 10), F(3, 10)),
+        controller={"R": F(1, 2), "k": F(1, 4)},
+        gain=F(1),
+        gain_rate=F(1, 3),
+    )
+    return replace(state, **changes)
