@@ -62,7 +62,7 @@ class Part(BaseModel):
     A field whose default is None is left out where it is None; others are written as they were given.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=True)
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=True, defer_build=True)
 
     @model_validator(mode="before")
     @classmethod

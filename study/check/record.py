@@ -120,7 +120,7 @@ def scenario_entry(scenario: Scenario) -> ScenarioEntry:
     if bounds.max_rate is not None:
         facts.append(_fact("largest rate of the set", _exact("max_rate", bounds.max_rate, "rad/s")))
     if bounds.max_weighted_rate is not None:
-        quantity = _exact("max_weighted_rate", bounds.max_weighted_rate, "kg^1/2 m rad/s")
+        quantity = _exact("max_weighted_rate", bounds.max_weighted_rate, unit_of(BoundArrays, "rate_bound"))
         facts.append(_fact("largest sqrt(Omega' J Omega) of the set", quantity))
     settled = f"|bv| <= {float(tolerance.attitude):g} and |w| <= {float(tolerance.rate):g} rad/s, for good"
     facts.append(_fact("settled means", text=settled))
