@@ -72,7 +72,7 @@ def run(
         from ..verify.certificates import certificate_text
         from ..verify.lyapunov import certificates_of
 
-        claims = [bound_claim(o.problem, o.bound) for o in study.optima if o.bound is not None]
+        claims = [bound_claim(o.stated or o.problem, o.bound) for o in study.optima if o.bound is not None]
         held = certificates_of(claims)
         for claim in claims:
             note(f"{claim.verdict.value} {claim.title}")

@@ -46,7 +46,7 @@ def print_optimum(console: Console, study: OptimumStudy) -> None:
     if scenario.clock.words:
         console.print(scenario.clock.words)
     if idle := idle_words(scenario, first):
-        console.print(f"Idle time left out, exactly: {idle}.")
+        console.print(f"Idle time left out: {idle}.")
     console.print()
     table = plain_table(*PEAK_HEAD)
     for optimum in study.optima:

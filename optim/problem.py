@@ -180,10 +180,14 @@ class TransferProblem:
             shorter = self.until(last)
         if not self.starts_at_rest or first <= span:
             return shorter, Fraction(0)
-        pieces = [piece for piece in shorter.window.pieces if piece.start >= first]
-        knots = (Fraction(0), *(piece.end - first for piece in pieces))
+        return shorter.from_instant(first, self.attitude, self.rate), first
+
+    def from_instant(self, instant: Fraction, attitude: Quaternion, rate: Vector) -> TransferProblem:
+        """State what is left of the transfer from a knot of the window profile on, from the state there."""
+        pieces = [piece for piece in self.window.pieces if piece.start >= instant]
+        knots = (Fraction(0), *(piece.end - instant for piece in pieces))
         window = PiecewisePolynomial(knots, tuple(piece.shape for piece in pieces))
-        return replace(shorter, window=window), first
+        return replace(self, window=window, attitude=attitude, rate=rate)
 
     @cached_property
     def unit_attitude(self) -> Array:

@@ -38,6 +38,7 @@ class Optimum:
     hopeless : why the limit cannot be met by any controller, or None
     bound : certified lower bound, computed apart from the answer; None where there is none
     least_time, least_impulse : within the limit; None if not asked for
+    stated : the transfer as the scenario states it, which the bound is about; None where it is `problem`
     """
 
     problem: TransferProblem
@@ -47,6 +48,7 @@ class Optimum:
     bound: LowerBound | None = None
     least_time: LeastTime | None = None
     least_impulse: LeastImpulseFound | None = None
+    stated: TransferProblem | None = None
 
     @property
     def key(self) -> str:

@@ -12,6 +12,7 @@ from ...models.types import Progress, silent
 from ...optim.problem import Terminal, TransferProblem, WindowProfile
 from ...scenario import Scenario
 from ..options import OptimumOptions, SolverKey
+from .coasting_start import after_coast
 from .result import Optimum, OptimumStudy
 
 if TYPE_CHECKING:
@@ -46,11 +47,12 @@ def run_optimum(
     _needs_a_limit(scenario, options, norms)
     for i, norm in enumerate(norms):
         tell(f"optimum, {norm.key}", i / len(norms))
-        problem = transfer(scenario, norm)
+        stated = transfer(scenario, norm)
+        problem, _ = after_coast(scenario, stated)
         limit = limit_of(scenario, norm)
-        hopeless = explain(problem, limit)
+        hopeless = explain(stated, limit)
         answer = minimum_peak(problem, solver=_solver(options.solver), search=search, refinement=refinement)
-        bound = _bound(problem, answer, options)
+        bound = _bound(stated, answer, options)
         least = None
         if options.least_time and limit is not None and hopeless is None:
             tell(f"least time, {norm.key}", (i + 0.5) / len(norms))
@@ -60,7 +62,7 @@ def run_optimum(
             tell(f"least impulse, {norm.key}", (i + 0.8) / len(norms))
             few = replace(search, starts=min(2, search.starts))
             spent = minimum_impulse(problem, limit, search=few)
-        optima.append(Optimum(problem, answer, limit, hopeless, bound, least, spent))
+        optima.append(Optimum(problem, answer, limit, hopeless, bound, least, spent, stated))
     tell("done", 1.0)
     return OptimumStudy(scenario, options, tuple(optima))
 
@@ -157,12 +159,18 @@ def transfer_and_origin(scenario: Scenario, norm: Norm) -> tuple[TransferProblem
 
 def idle_words(scenario: Scenario, problem: TransferProblem) -> str:
     """Say which idle ends were left out, or nothing."""
-    _, origin = transfer_and_origin(scenario, problem.norm)
-    end = origin + problem.horizon
+    stated, origin = transfer_and_origin(scenario, problem.norm)
+    _, coasted = after_coast(scenario, stated)
+    end = origin + coasted + problem.horizon
     words = []
     if origin > 0:
         words.append(
             f"a body at rest stays so until the first window: times count from t = {float(origin):.10g} s"
+        )
+    if coasted > 0:
+        words.append(
+            f"without torque the body turns freely until the first window, integrated once: start and times "
+            f"are those of t = {float(coasted):.10g} s (the certified bound is that of the whole transfer)"
         )
     if end < final_time(scenario):
         words.append(f"a body at rest after the last window stays so: solved until t = {float(end):.10g} s")
