@@ -7,6 +7,7 @@ from fractions import Fraction
 from typing import final
 
 from ...models.laws import Law
+from ...models.rigid_body import ExactMatrix
 from ...verify.filter.answer import answer
 from ...verify.filter.certify import certify_floor
 from ...verify.filter.comparison import BodyBounds
@@ -23,14 +24,17 @@ class CertifiedConvergence:
 
     Attributes
     ----------
+    task : its body may be off by the tolerance
     max_angle_deg : bound on 2 acos(b0), deg
     max_rate, max_weighted_rate : bounds on |w(0)| (rad/s) and |Omega(0)|_J; both None is at rest
+    inertia_tolerance : largest deviation of each entry of J, kg m^2, or None
     """
 
     task: Task
     max_angle_deg: Fraction
     max_rate: Fraction | None = None
     max_weighted_rate: Fraction | None = None
+    inertia_tolerance: ExactMatrix | None = None
 
     def __call__(self, law: Law) -> str | None:
         """None if both are PROVED for the law, else the reason why not."""
@@ -41,6 +45,7 @@ class CertifiedConvergence:
             max_angle_deg=self.max_angle_deg,
             max_rate=self.max_rate,
             max_weighted_rate=self.max_weighted_rate,
+            inertia_tolerance=self.inertia_tolerance,
             attitude=self.task.attitude_tolerance,
             rate=self.task.rate_tolerance,
         )

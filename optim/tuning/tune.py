@@ -7,9 +7,13 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
 
+import numpy as np
+
 from ...models.laws import Law
 from ...models.norms import Norm
+from ...models.simulation import SimulationError
 from ..comparison.measure import LawRun, Task, run_law
+from .choose import least_passing
 from .evaluate import EnsembleRuns
 from .search import DifferentialEvolution, SearchHistory, Trial
 from .space import SearchSpace, with_parameters
@@ -18,7 +22,7 @@ Certify = Callable[[Law], str | None]
 """Certified conditions: None if they hold for a law, else the reason why not."""
 
 ATTEMPTS = 20
-"""Candidates that are put to the certified conditions, least peak first, before giving up."""
+"""Candidates that are put to the certified conditions before giving up."""
 
 
 @final
@@ -30,7 +34,7 @@ class Tuned:
     ----------
     law : the best candidate that settles and is certified, or None
     history : every candidate tried
-    refused : (candidate, reason) of better ones that the certified conditions turned down
+    refused : (candidate, reason) of better ones that were turned down, least peak first
     reason : why `law` is None
     """
 
@@ -93,19 +97,40 @@ def tune(
     method = method if method is not None else DifferentialEvolution()
     evaluate = EnsembleRuns(law, task, settle=settle, norm=norm)
     history = method.run(space, evaluate, start=space.encode(law.parameters) if start_from_law else None)
-    refused: list[tuple[Trial, str]] = []
     candidates = _distinct(history.settled_by_peak)
-    for trial in candidates[:ATTEMPTS]:
-        chosen = with_parameters(law, dict(trial.parameters))
-        reason = certify(chosen) if certify is not None else None
-        run = run_law(name, chosen, task)
-        if reason is None and (run.figures.settling is None or run.figures.settling > settle):
-            reason = "settles later than asked when simulated accurately"
-        if reason is None:
-            return Tuned(name, settle, norm, chosen, history, tuple(refused))
-        refused.append((trial, reason))
-    why = "no candidate settles in time" if not candidates else f"none of {len(refused)} candidates passes"
-    return Tuned(name, settle, norm, None, history, tuple(refused), why)
+    reasons: dict[int, str] = {}
+
+    def passes(number: int) -> bool:
+        chosen = with_parameters(law, dict(candidates[number].parameters))
+        reason = _failure(name, chosen, task, settle) or (certify(chosen) if certify is not None else None)
+        if reason is not None:
+            reasons[number] = reason
+        return reason is None
+
+    points = np.array([space.encode(dict(trial.parameters)) for trial in candidates])
+    best = None
+    if candidates:
+        hint = int(np.argmin(np.linalg.norm(points - space.encode(law.parameters), axis=1)))
+        best = least_passing(points, passes, attempts=ATTEMPTS, hint=hint)
+    refused = tuple((candidates[i], reasons[i]) for i in sorted(reasons) if best is None or i < best)
+    if best is not None:
+        chosen = with_parameters(law, dict(candidates[best].parameters))
+        return Tuned(name, settle, norm, chosen, history, refused)
+    why = "no candidate settles in time"
+    if candidates:
+        why = f"of {len(candidates)} that settle {len(refused)} were put to the conditions: none meets them"
+    return Tuned(name, settle, norm, None, history, refused, why)
+
+
+def _failure(name: str, law: Law, task: Task, settle: Fraction) -> str | None:
+    """Why an accurate run does not confirm what the search saw, or None."""
+    try:
+        run = run_law(name, law, task)
+    except SimulationError as error:
+        return str(error)
+    if run.figures.settling is None or run.figures.settling > settle:
+        return "settles later than asked when simulated accurately"
+    return None
 
 
 def _distinct(trials: tuple[Trial, ...]) -> list[Trial]:

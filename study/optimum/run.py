@@ -121,6 +121,24 @@ MAX_TRANSFER_WINDOWS = 2000
 """Windows of a transfer that is solved: the search takes several cells, and their derivatives, for each."""
 
 
+def require_few_windows(scenario: Scenario, windows: int, horizon: Fraction) -> None:
+    """Refuse a transfer through more windows than can be solved.
+
+    Raises
+    ------
+    ScenarioError
+        With their number.
+    """
+    from ...scenario import ScenarioError
+
+    if windows > MAX_TRANSFER_WINDOWS:
+        raise ScenarioError(
+            f"{scenario.path.name}: optimum.final_time",
+            f"{windows} windows open before {float(horizon):g} s, and each is resolved: give a final time "
+            f"with at most {MAX_TRANSFER_WINDOWS}",
+        )
+
+
 def transfer(scenario: Scenario, norm: Norm) -> TransferProblem:
     """State the scenario's transfer: start, windows, final time, tolerances; long idle ends left out."""
     return transfer_and_origin(scenario, norm)[0]
@@ -134,16 +152,8 @@ def transfer_and_origin(scenario: Scenario, norm: Norm) -> tuple[TransferProblem
     ScenarioError
         If there are more windows before the final time than can be solved.
     """
-    from ...scenario import ScenarioError
-
     table, horizon = scenario.optimum, final_time(scenario)
-    windows = scenario.schedule.windows_before(horizon)
-    if windows > MAX_TRANSFER_WINDOWS:
-        raise ScenarioError(
-            f"{scenario.path.name}: optimum.final_time",
-            f"{windows} windows open before {float(horizon):g} s, and each is resolved: give a final time "
-            f"with at most {MAX_TRANSFER_WINDOWS}",
-        )
+    require_few_windows(scenario, scenario.schedule.windows_before(horizon), horizon)
     problem = TransferProblem.through(
         scenario.schedule,
         body=scenario.body,

@@ -19,6 +19,7 @@ from ...reports.record.document import Sections
 from ...reports.record.tables import CellEntry, CollectionEntry, FigureEntry, TableEntry
 from ...scenario import LawChoice, Scenario, ScenarioError
 from ..collections import Arrays, certified_below, collection_record, newtons, task_of
+from ..optimum.run import require_few_windows
 
 DEFAULT_DUTY = (Fraction(1, 5), Fraction(3, 10), Fraction(2, 5), Fraction(1, 2), Fraction(3, 5))
 """Duty cycles studied where the scenario names none."""
@@ -63,7 +64,7 @@ def run_schedule_study(
     duty = scenario.study.duty_cycles or DEFAULT_DUTY
     time = scenario.optimum.final_time or scenario.horizon
     built, task, norm = choice.build(), task_of(scenario), norm or NORMS[scenario.optimum.norm]
-    _require_windows_that_fit(scenario, task, periods, duty)
+    _require_windows_that_fit(scenario, task, periods, duty, time)
     cases = study_schedules(
         built, task, periods, duty, time=time, norm=norm, floor=certified_floor, executor=executor
     )
@@ -80,11 +81,12 @@ def run_schedule_study(
 
 
 def _require_windows_that_fit(
-    scenario: Scenario, task: Task, periods: Sequence[Fraction], duty: Sequence[Fraction]
+    scenario: Scenario, task: Task, periods: Sequence[Fraction], duty: Sequence[Fraction], time: Fraction
 ) -> None:
-    """Refuse a period in which the window of some duty cycle cannot stand."""
+    """Refuse a period in which the window of some duty cycle cannot stand, or of which too many come."""
     family = ScheduleFamily()
     for period in periods:
+        require_few_windows(scenario, int(time // period), time)
         for share in duty:
             try:
                 family.task(task, period, share * period)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
 from fractions import Fraction
 
@@ -45,6 +45,7 @@ def run_tuning(
     time = settle if settle is not None else scenario.tune.settle
     if time is None:
         raise ScenarioError(f"{scenario.path.name}: tune.settle", "required (or --settle), but missing")
+    _require_time(scenario, time)
     built = scenario.law(label).build()
     require_search_space(scenario, built)
     return tune(
@@ -57,6 +58,16 @@ def run_tuning(
         method=_method(scenario, seed),
         certify=conditions_on(scenario, scenario.law(label)),
     )
+
+
+def _require_time(scenario: Scenario, settle: Fraction) -> None:
+    """Refuse a settling time that the run does not reach."""
+    if settle > scenario.horizon:
+        raise ScenarioError(
+            f"{scenario.path.name}: tune.settle",
+            f"{float(settle):g} s lie beyond the run, which ends at {float(scenario.horizon):g} s: give a "
+            "longer simulation.horizon or an earlier settling time",
+        )
 
 
 def require_search_space(scenario: Scenario, law: Law) -> None:
@@ -81,6 +92,8 @@ def run_front(
     ScenarioError
         If no law has such a label.
     """
+    for settle in settles:
+        _require_time(scenario, settle)
     choices = [scenario.law(label) for label in labels] or list(scenario.laws)
     laws = {choice.label: choice.build() for choice in choices}
     for law in laws.values():
@@ -107,7 +120,11 @@ def conditions_on(scenario: Scenario, choice: LawChoice) -> CertifiedConvergence
         return None
     bounds = scenario.initial_set
     return CertifiedConvergence(
-        task_of(scenario), bounds.max_angle_deg, bounds.max_rate, bounds.max_weighted_rate
+        task_of(scenario),
+        bounds.max_angle_deg,
+        bounds.max_rate,
+        bounds.max_weighted_rate,
+        scenario.inertia_tolerance,
     )
 
 
@@ -169,7 +186,7 @@ def tuning_record(scenario: Scenario, tuned: Tuned) -> Record:
                 tables=tuple(tables),
                 figures=tuple(figures_out),
                 notes=(
-                    *(f"refused: {reason}" for _, reason in tuned.refused),
+                    *_refusals(tuned),
                     *_uncertified(scenario, [tuned.label]),
                     "A seeded global search: an upper bound on the least peak this law can reach.",
                 ),
@@ -179,6 +196,24 @@ def tuning_record(scenario: Scenario, tuned: Tuned) -> Record:
         seeds={"search": tuned.history.seed},
         options={"settle": float(tuned.settle), "norm": tuned.norm.key, "trials": len(tuned.history.trials)},
     )
+
+
+SHOWN = 3
+"""Candidates turned down that are listed one by one."""
+
+
+def _refusals(tuned: Tuned) -> Iterator[str]:
+    """Candidates with a lower peak that were turned down, and what to do if none was left."""
+    for trial, reason in tuned.refused[:SHOWN]:
+        values = ", ".join(f"{name} = {float(value):g}" for name, value in trial.parameters)
+        yield f"turned down: {values} (peak {trial.peak:.4g} N m, settles in its run): {reason}"
+    if len(tuned.refused) > SHOWN:
+        yield f"turned down for such reasons: {len(tuned.refused) - SHOWN} more"
+    if tuned.law is None and tuned.refused:
+        yield (
+            "What is turned down may well converge: the certified bounds are wider than the runs. A smaller "
+            "[initial_set], other [tune] bounds or a later settling time may leave some to be certified."
+        )
 
 
 def _uncertified(scenario: Scenario, labels: Sequence[str]) -> list[str]:

@@ -143,6 +143,12 @@ def test_sweep_reports_each_case(scenario, tmp_path):
     assert rows[0]["floor"]["rigorous"]
 
 
+def test_a_sweep_over_more_windows_than_can_be_solved_is_refused(scenario, capsys):
+    scenario.write_text(SMALL + "[optimum]\nfinal_time = 1e12\n")
+    assert run(["sweep", str(scenario)]) == 2
+    assert "125000000000 windows open before 1e+12 s" in capsys.readouterr().err
+
+
 def test_paper_reports_its_statements(tmp_path):
     out = tmp_path / "paper.json"
     assert run(["paper", "--no-survey", "--json", str(out)]) == 0
@@ -159,6 +165,8 @@ def test_paper_reports_its_statements(tmp_path):
         (["tune", "--settle", "20", "--peak-norm", "sum"], "--peak-norm"),
         (["tune", "--settle", "20,28"], "one time"),
         (["tune", "--front"], "--front needs"),
+        (["tune", "--settle", "1e12"], "tune.settle: 1e+12 s lie beyond the run, which ends at 56 s"),
+        (["tune", "--front", "--settle", "20,57"], "tune.settle: 57 s lie beyond the run"),
     ],
 )
 def test_bad_words_are_one_line(scenario, words, says, capsys):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from intermit.models.norms import LARGEST_COMPONENT
 from intermit.optim.comparison.measure import Task, run_law
+from intermit.optim.tuning.choose import least_passing
 from intermit.optim.tuning.evaluate import EnsembleRuns
 from intermit.optim.tuning.search import DifferentialEvolution, Outcomes
 from intermit.optim.tuning.space import SearchSpace, with_parameters
@@ -65,6 +66,29 @@ def test_conditions_turn_candidates_down():
     assert tuned.law is None
     assert tuned.run(task()) is None
     assert {reason for _, reason in tuned.refused} == {"no"}
+
+
+@pytest.mark.parametrize("edge", [0.35, 0.6, 0.9])
+def test_few_trials_find_what_passes_where_neighbours_are_alike(edge):
+    """300 candidates of which those beyond an edge pass; strides along the ranking find none as good."""
+    rng = np.random.default_rng(5)
+    points = rng.random((300, 2))
+    points = points[np.argsort(points @ [1.0, 0.3])]  # the peak grows with what makes them pass
+    tried = []
+
+    def passes(number):
+        tried.append(number)
+        return bool(points[number, 0] > edge)
+
+    hint = int(np.argmax(points[:, 0]))
+    best = least_passing(points, passes, attempts=20, hint=hint)
+    assert len(tried) <= 20
+    assert len(set(tried)) == len(tried)
+    assert points[best, 0] > edge
+    truth = int(np.argmax(points[:, 0] > edge))
+    assert best <= truth + 60
+    assert least_passing(points, lambda _: False, attempts=20, hint=hint) is None
+    assert least_passing(points, lambda _: True, attempts=20, hint=hint) == 0
 
 
 def test_impossible_settling_time_is_said_so():
