@@ -9,7 +9,7 @@ from ..numbers import write
 from ..record import Record
 from ..record.base import unit_of
 from ..record.claims import ClaimEntry, QuantityEntry
-from ..record.runs import RunArrays
+from ..record.runs import RunArrays, RunRole
 from ..record.tables import VerdictCell
 from .blocks import Axis, Block, Cell, Chapter, Chart, Charts, Facts, Line, Table, Text, Verbatim
 from .problem import shaded
@@ -18,7 +18,7 @@ from .verdicts import answer, groups
 from .wording import plural
 
 SIDES = ("A", "B")
-ROLES = (
+ROLES: tuple[tuple[RunRole, str, str, tuple[str, ...]], ...] = (
     ("torque", "Applied torque g u", "g u", ("x", "y", "z")),
     ("quaternion", "Attitude", "β", ("β₀", "β₁", "β₂", "β₃")),
     ("rate", "Rate", "ω", ("ω₁", "ω₂", "ω₃")),
@@ -156,7 +156,7 @@ def _histories(a: Record, b: Record) -> Chapter | None:
     return Chapter("histories", "Histories", tuple(blocks)) if charts else None
 
 
-def _lines(one: Run, two: Run, role: str, names: tuple[str, ...]) -> tuple[Line, ...]:
+def _lines(one: Run, two: Run, role: RunRole, names: tuple[str, ...]) -> tuple[Line, ...]:
     lines = []
     for side, run in zip(SIDES, (one, two), strict=True):
         values = run.array(role)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ..numbers import number, unit_text
 from ..record import Record
 from ..record.base import unit_of
-from ..record.optimum import OptimumArrays, OptimumEntry
+from ..record.optimum import OptimumArrays, OptimumEntry, OptimumRole
 from .blocks import Axis, Block, Cell, Chapter, Chart, Charts, Line, Table, Text
 from .problem import shaded
 from .wording import plural
@@ -78,19 +78,20 @@ def _one(record: Record, index: int, entry: OptimumEntry) -> list[Block]:
 def _charts(record: Record, index: int, entry: OptimumEntry) -> list[Chart]:
     if entry.arrays is None:
         return []
-    names, windows = entry.arrays.array_names(), shaded(record)
+    windows = shaded(record)
     t = record.array(entry.arrays.time)
     charts = []
-    kinds = (
+    kinds: tuple[tuple[OptimumRole, str, tuple[str, ...]], ...] = (
         ("torque", "Torque", ("x", "y", "z")),
         ("rate", "Rate", ("ω₁", "ω₂", "ω₃")),
         ("switching", "Switching function", ("x", "y", "z")),
         ("momentum", "Angular momentum", ("x", "y", "z")),
     )
     for role, words, suffixes in kinds:
-        if role not in names:
+        name = entry.arrays.name_of(role)
+        if name is None:
             continue
-        values = record.array(names[role]).reshape(len(t), -1)
+        values = record.array(name).reshape(len(t), -1)
         single = values.shape[1] == 1
         lines = tuple(
             Line(

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..record import Array, Record
 from ..record.base import unit_of
-from ..record.runs import BoundArrays, CaseEntry, RunArrays, RunEntry
+from ..record.runs import BoundArrays, BoundRole, CaseEntry, RunArrays, RunEntry, RunRole
 from .blocks import Axis, Block, Body, Chapter, Chart, Charts, Line, Replay, Table, Text
 from .problem import shaded
 from .verdicts import floors
@@ -34,9 +34,9 @@ class Run:
     data: RunEntry
     record: Record
 
-    def array(self, role: str) -> Array | None:
+    def array(self, role: RunRole) -> Array | None:
         """Array in this role, if the run has it."""
-        name = self.data.arrays.array_names().get(role)
+        name = self.data.arrays.name_of(role)
         return None if name is None else self.record.array(name)
 
     def controller(self, state: str) -> Array | None:
@@ -61,7 +61,7 @@ def runs_of(record: Record) -> tuple[Run, ...]:
     return tuple(found)
 
 
-def _components(run: Run, role: str, names: tuple[str, ...]) -> tuple[Line, ...]:
+def _components(run: Run, role: RunRole, names: tuple[str, ...]) -> tuple[Line, ...]:
     values = run.array(role)
     if values is None:
         return ()
@@ -123,7 +123,7 @@ def torque_chapter(record: Record) -> Chapter | None:
             [(r, _components(r, "torque", axes)) for r in runs],
         )
     )
-    applied += _envelopes(record, "torque")
+    applied += _envelopes(record, "torque_bound")
     commanded = list(
         _beside(
             record,
@@ -169,7 +169,7 @@ def filter_chapter(record: Record) -> Chapter | None:
     return Chapter("filter", "Filter and scaling", (Charts(tuple(charts)),)) if charts else None
 
 
-def _by_case(record: Record, role: str, label: str) -> dict[str, list[Line]]:
+def _by_case(record: Record, role: BoundRole, label: str) -> dict[str, list[Line]]:
     """Certified curves of each law, or the level its certificate or claim states."""
     found: dict[str, list[Line]] = {}
     for case in record.sections.cases:
@@ -182,7 +182,7 @@ def _by_case(record: Record, role: str, label: str) -> dict[str, list[Line]]:
     return found
 
 
-def _certified(record: Record, role: str) -> list[Line]:
+def _certified(record: Record, role: BoundRole) -> list[Line]:
     """Collect the certified curves of one role, one per law that has it, in the law's colour, dashed."""
     lines = []
     for i, case in enumerate(record.sections.cases):
@@ -192,12 +192,12 @@ def _certified(record: Record, role: str) -> list[Line]:
     return lines
 
 
-def _bounds(record: Record, case: CaseEntry, role: str) -> Iterator[tuple[Array, Array]]:
+def _bounds(record: Record, case: CaseEntry, role: BoundRole) -> Iterator[tuple[Array, Array]]:
     """Times and values of a case's certified bounds of one role."""
     for certificate in case.certificates:
-        names = certificate.arrays.array_names() if certificate.arrays is not None else {}
-        if role in names:
-            yield record.array(names["time"]), record.array(names[role])
+        arrays = certificate.arrays
+        if arrays is not None and (name := arrays.name_of(role)) is not None:
+            yield record.array(arrays.time), record.array(name)
 
 
 def _other_states(record: Record, runs: tuple[Run, ...]) -> Iterator[Chart]:
@@ -222,12 +222,12 @@ def attitude_chapter(record: Record) -> Chapter | None:
     rate = [(r, _components(r, "rate", ("ω₁", "ω₂", "ω₃"))) for r in runs]
     attitude = [
         *_beside(record, "quaternion", "Attitude", Axis("β"), quaternion),
-        *_envelopes(record, "angle"),
+        *_envelopes(record, "angle_bound"),
     ]
     rates = [
         *_beside(record, "rate", "Rate", Axis("ω", unit_of(RunArrays, "rate")), rate),
-        *_envelopes(record, "speed"),
-        *_envelopes(record, "rate"),
+        *_envelopes(record, "speed_bound"),
+        *_envelopes(record, "rate_bound"),
     ]
     blocks: list[Block] = []
     bodies = _bodies(record, runs)
@@ -238,17 +238,21 @@ def attitude_chapter(record: Record) -> Chapter | None:
     return Chapter("attitude", "Attitude and rate", tuple(blocks)) if blocks else None
 
 
-def _envelopes(record: Record, what: str) -> Iterator[Chart]:
-    words = {
-        "torque": "Certified bound on the applied torque |g u|",
-        "angle": "Certified bound on the error angle",
-        "speed": "Certified bound on the rate |ω|",
-        "rate": "Certified bound on sqrt(Ω' J Ω)",
-    }[what]
-    lines = _certified(record, f"{what}_bound")
+ENVELOPES: tuple[tuple[BoundRole, str], ...] = (
+    ("torque_bound", "Certified bound on the applied torque |g u|"),
+    ("angle_bound", "Certified bound on the error angle"),
+    ("speed_bound", "Certified bound on the rate |ω|"),
+    ("rate_bound", "Certified bound on sqrt(Ω' J Ω)"),
+)
+"""Bounds over time that have a figure of their own, and its title."""
+
+
+def _envelopes(record: Record, role: BoundRole) -> Iterator[Chart]:
+    lines, words = _certified(record, role), dict(ENVELOPES)[role]
     if lines:
-        axis = Axis("bound", unit_of(BoundArrays, f"{what}_bound"))
-        yield Chart(f"bound-{what}", words, TIME, axis, tuple(lines), f"{words} over time.", shaded(record))
+        axis = Axis("bound", unit_of(BoundArrays, role))
+        key = f"bound-{role.removesuffix('_bound')}"
+        yield Chart(key, words, TIME, axis, tuple(lines), f"{words} over time.", shaded(record))
 
 
 def _bodies(record: Record, runs: tuple[Run, ...]) -> tuple[Body, ...]:
@@ -266,12 +270,19 @@ def _bodies(record: Record, runs: tuple[Run, ...]) -> tuple[Body, ...]:
     return tuple(found)
 
 
+STORED: tuple[tuple[RunRole, RunRole, str], ...] = (
+    ("storage", "storage_bound", "Lyapunov function V"),
+    ("storage_rate", "storage_rate_bound", "Derivative V'"),
+)
+"""Histories of the storage function, the bound of each, and its name."""
+
+
 def storage_chapter(record: Record) -> Chapter | None:
     """V and V' with their bounds along each run."""
     charts = []
     for run in runs_of(record):
-        for role, words in (("storage", "Lyapunov function V"), ("storage_rate", "Derivative V'")):
-            values, bound = run.array(role), run.array(f"{role}_bound")
+        for role, limit, words in STORED:
+            values, bound = run.array(role), run.array(limit)
             if values is None:
                 continue
             lines = [Line(words, run.time, values)]

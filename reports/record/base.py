@@ -77,8 +77,8 @@ class Part(BaseModel):
         return {name: value for name, value in named if value is not None or fields[name].is_required()}
 
     def but(self, **changes: Any) -> Self:
-        """The same with some fields changed."""
-        return self.model_copy(update=changes)
+        """The same with some fields changed, checked like the whole."""
+        return type(self).model_validate(self.given() | changes)
 
     def array_names(self) -> dict[str, str]:
         """The arrays that fields of this part name, by role ("field" or "field.key"), in order of the roles.

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field
 
 from .base import ArrayOf, Integer, Number, Part, Unit
 from .claims import QuantityEntry
 from .runs import EffortEntry
+
+OptimumRole = Literal["quaternion", "rate", "torque", "switching", "profile", "momentum"]
+"""Histories that an optimum may have."""
 
 
 class OptimumArrays(Part):
@@ -21,6 +24,11 @@ class OptimumArrays(Part):
     switching: Annotated[str | None, ArrayOf("", "(n,) or (n, m)")] = None
     profile: Annotated[str | None, ArrayOf()] = None
     momentum: Annotated[str | None, ArrayOf("N m s")] = None
+
+    def name_of(self, role: OptimumRole) -> str | None:
+        """Name of the array in a role, if the optimum has it."""
+        name: str | None = getattr(self, role)
+        return name
 
 
 class LocalOptima(Part):

@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from .base import ArrayOf, Flag, Integer, Part
 from .claims import ClaimEntry, QuantityEntry, WitnessEntry
+
+RunRole = Literal[
+    "quaternion", "rate", "command", "torque", "gain", "error_rate",
+    "storage", "storage_bound", "storage_rate", "storage_rate_bound",
+]  # fmt: skip
+"""Histories that a run may have."""
+BoundRole = Literal["filter_floor", "angle_bound", "rate_bound", "speed_bound", "torque_bound"]
+"""Bounds over time that a certificate may have."""
 
 
 class EffortEntry(Part):
@@ -31,6 +39,11 @@ class RunArrays(Part):
     storage_rate: Annotated[str | None, ArrayOf("kg m^2/s^2")] = None
     storage_rate_bound: Annotated[str | None, ArrayOf("kg m^2/s^2")] = None
 
+    def name_of(self, role: RunRole) -> str | None:
+        """Name of the array in a role, if the run has it."""
+        name: str | None = getattr(self, role)
+        return name
+
 
 class RunEntry(Part):
     """One simulated run."""
@@ -53,6 +66,11 @@ class BoundArrays(Part):
     rate_bound: Annotated[str | None, ArrayOf("kg^1/2 m rad/s")] = None
     speed_bound: Annotated[str | None, ArrayOf("rad/s")] = None
     torque_bound: Annotated[str | None, ArrayOf("N m")] = None
+
+    def name_of(self, role: BoundRole) -> str | None:
+        """Name of the array of a bound, if the certificate has it."""
+        name: str | None = getattr(self, role)
+        return name
 
 
 class CertificateEntry(Part):

@@ -2,6 +2,7 @@
 
 import ast
 from pathlib import Path
+from typing import get_args
 
 import intermit
 import pytest
@@ -46,6 +47,25 @@ def test_a_field_without_writer_would_be_seen() -> None:
         invented: str = ""
 
     assert set(QuantityEntry.model_fields) - WRITTEN["QuantityEntry"] == {"invented"}
+
+
+@pytest.mark.parametrize(
+    ("arrays", "roles"),
+    [
+        (runs.RunArrays, runs.RunRole),
+        (runs.BoundArrays, runs.BoundRole),
+        (optimum.OptimumArrays, optimum.OptimumRole),
+    ],
+)
+def test_roles_are_the_fields(arrays: type[Part], roles: object) -> None:
+    assert {*get_args(roles)} == {*arrays.model_fields} - {"time", "controller"}
+
+
+def test_a_changed_part_is_checked_like_a_new_one() -> None:
+    part = tables.ColumnEntry(key="k", label="l")
+    assert part.but(label="m").label == "m"
+    with pytest.raises(ValueError, match="invented"):
+        part.but(invented=1)
 
 
 def test_no_page_reads_keys_of_the_document() -> None:
