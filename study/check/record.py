@@ -17,6 +17,7 @@ from ...reports.record.document import Outcome, Provenance, Sections
 from ...reports.record.problem import FactEntry, ScenarioEntry, ScheduleArrays, ScheduleEntry, TolerancesEntry
 from ...reports.record.runs import (
     BoundArrays,
+    BoundRole,
     CaseEntry,
     CertificateEntry,
     EffortEntry,
@@ -27,6 +28,7 @@ from ...reports.record.runs import (
 )
 from ...scenario import LawChoice, Scenario
 from ...scenario.laws import law_class
+from ...verify.filter.over_time import BoundsOverTime
 from ...verify.sampling import SampledDerivative
 from ..claims.entries import claim_entries, quantity_entry, witness_entry
 from ..histories import output_times
@@ -195,30 +197,13 @@ def case_entry(scenario: Scenario, case: Case, key: str) -> tuple[CaseEntry, dic
         runs.append(entry)
     elif case.run is not None:
         notes.append(case.run.failure)
-    certificates = []
+    certificates: list[CertificateEntry] = []
     curves = case.findings.curves
     if curves is not None:
         name = f"{key}.certified"
-        arrays |= {f"{name}.{role}": values for role, values in vars(curves).items()}
-        floor = next(claim for claim in case.claims if claim.key == "filter.floor")
-        certificates.append(
-            CertificateEntry(
-                key=name,
-                label=f"certified bounds, {case.choice.label}",
-                claim=floor.statement,
-                quantities=tuple(quantity_entry(q) for q in floor.quantities),
-                arrays=BoundArrays(
-                    time=f"{name}.time",
-                    filter_floor=f"{name}.filter_floor",
-                    angle_bound=f"{name}.angle_bound",
-                    rate_bound=f"{name}.rate_bound",
-                    speed_bound=f"{name}.speed_bound",
-                    torque_bound=f"{name}.torque_bound",
-                ),
-                recheck=f"intermit check {scenario.path.name}",
-                notes=("Each value holds from its time to the next.",),
-            )
-        )
+        found, bounds = certificate_entry(scenario, case, curves, name)
+        certificates.append(found)
+        arrays |= bounds
     return CaseEntry(
         key=key,
         label=case.choice.label,
@@ -230,6 +215,35 @@ def case_entry(scenario: Scenario, case: Case, key: str) -> tuple[CaseEntry, dic
         certificates=tuple(certificates),
         notes=tuple(notes),
     ), arrays
+
+
+def certificate_entry(
+    scenario: Scenario, case: Case, curves: BoundsOverTime, key: str
+) -> tuple[CertificateEntry, dict[str, Array]]:
+    """Certified bounds over time; one that is not finite everywhere is left out."""
+    arrays = {f"{key}.{role}": v for role, v in vars(curves).items() if np.all(np.isfinite(v))}
+
+    def held(role: BoundRole) -> str | None:
+        return f"{key}.{role}" if f"{key}.{role}" in arrays else None
+
+    floor = next(claim for claim in case.claims if claim.key == "filter.floor")
+    entry = CertificateEntry(
+        key=key,
+        label=f"certified bounds, {case.choice.label}",
+        claim=floor.statement,
+        quantities=tuple(quantity_entry(q) for q in floor.quantities),
+        arrays=BoundArrays(
+            time=f"{key}.time",
+            filter_floor=held("filter_floor"),
+            angle_bound=held("angle_bound"),
+            rate_bound=held("rate_bound"),
+            speed_bound=held("speed_bound"),
+            torque_bound=held("torque_bound"),
+        ),
+        recheck=f"intermit check {scenario.path.name}",
+        notes=("Each value holds from its time to the next.",),
+    )
+    return entry, arrays
 
 
 def parameter_entries(choice: LawChoice) -> tuple[QuantityEntry, ...]:

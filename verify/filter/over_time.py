@@ -41,7 +41,7 @@ class BoundsOverTime:
     angle_bound : (n,) upper bound of the error angle 2 acos(b0), rad
     rate_bound : (n,) upper bound of |Omega|_J = sqrt(Omega' J Omega), kg^1/2 m rad/s
     speed_bound : (n,) upper bound of |w|, rad/s
-    torque_bound : (n,) upper bound of |g u|, Euclidean, N m
+    torque_bound : (n,) upper bound of |g u|, Euclidean, N m; like that of |w| infinite where none is known
     """
 
     time: Array
@@ -64,8 +64,7 @@ def bounds_over_time(floor: FilterLowerBound, horizon: Fraction, cells: int = CE
     for flowpipe in floor.flowpipes:
         for boxes in _unrolled(flowpipe, floor.schedule.period, horizon, cells):
             box, cell = _cells(edges, boxes)
-            n = greatest_bv(boxes.S)
-            speed = (boxes.y / root + 2 * boxes.g**2 * boxes.high * n) * OUTWARD
+            speed = _speeds(boxes, root)
             applied, _ = torque_bounds(flowpipe.system, floor.bounds, boxes)
             np.minimum.at(least, cell, boxes.low_filter[box])
             for held, values in ((gaps, boxes.S), (rates, boxes.y), (speeds, speed), (torques, applied)):
@@ -74,6 +73,14 @@ def bounds_over_time(floor: FilterLowerBound, horizon: Fraction, cells: int = CE
         return None
     angles = np.array([angle_above(gap) for gap in gaps.tolist()])
     return BoundsOverTime(edges[:-1], least, angles, rates, speeds, torques)
+
+
+def _speeds(boxes: BoxColumns, root: float) -> Array:
+    """Bound of |w| <= |Omega| + 2 g^2 kappa |bv| on each box, rad/s; `root` is at most sqrt(Jmin)."""
+    with np.errstate(over="ignore", invalid="ignore"):  # a gain beyond numbers: infinite, or 0 where g is
+        push = np.where(boxes.g > 0, 2 * boxes.g**2 * boxes.high * greatest_bv(boxes.S), 0.0)
+        speeds: Array = (boxes.y / root + np.where(np.isnan(push), np.inf, push)) * OUTWARD
+    return speeds
 
 
 def angle_above(gap: float) -> float:

@@ -128,7 +128,7 @@ class _Shape:
     schedule: Schedule
     initial: InitialSet
     max_rate: Fraction | None
-    norms: tuple[Norm, ...]
+    norms: tuple[Norm, ...] = MEASURED
 
     def draw(self, rng: np.random.Generator, count: int) -> Array:
         i = self.initial

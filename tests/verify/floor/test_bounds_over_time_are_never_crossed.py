@@ -12,6 +12,7 @@ from intermit.verify.filter import over_time
 from intermit.verify.filter.certify import FloorOptions, certify_floor
 from intermit.verify.filter.over_time import angle_above, bounds_over_time
 from intermit.verify.filter.question import FloorQuestion
+from intermit.verify.filter.torque_bound import BoxColumns
 from intermit.verify.filter.worst_found import _Shape
 from problems import ADAPTIVE, J1, PERSISTENCE
 
@@ -127,3 +128,13 @@ def test_angles_are_rounded_up():
     tiny = 1e-30  # 1 - b0 = tiny: 2 acos(b0) = sqrt(8 tiny) (1 + tiny/12 + ...)
     assert angle_above(tiny) >= np.sqrt(8 * tiny)
     assert angle_above(tiny) == pytest.approx(np.sqrt(8 * tiny), rel=1e-15)
+
+
+def test_a_gain_beyond_numbers_bounds_nothing_and_is_no_number():
+    """An infinite bound of kappa makes the bounds of |w| and |g u| infinite where g > 0, and only there."""
+    boxes = BoxColumns.of(floor_of(QUESTION).flowpipes[0].boxes)
+    endless = replace(boxes, high=np.full_like(boxes.high, np.inf))
+    speeds = over_time._speeds(endless, 1.0)
+    assert not np.isnan(speeds).any()
+    assert np.array_equal(np.isinf(speeds), boxes.g > 0)
+    assert np.isfinite(over_time._speeds(boxes, 1.0)).all()
