@@ -6,7 +6,7 @@ The answer is a list of flowpipes, one a bin of the initial set, each true as it
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from heapq import heapify, heappop, heappush
@@ -17,6 +17,7 @@ from typing import final
 from ...models.laws import Law
 from ...models.schedule import Schedule
 from ..flow.stepping import CannotProceedError, ComparisonSystem, Stepper
+from ..schedule.zero_runs import longest_zero_run
 from .adaptive import AdaptiveSystem
 from .comparison import BodyBounds
 from .flowpipe import Flowpipe, LawComparison
@@ -33,6 +34,8 @@ WINDOW_BUDGET = 240
 """Bins times windows of a table or a period."""
 
 
+HOPELESS_EXPONENT = 30
+"""Where R decays by more than exp of minus this between two windows, the initial set is not split."""
 MAX_PERIOD_WINDOWS = 100
 """Windows a period may have; of longer ones only this many are certified, and no tail is looked for."""
 
@@ -133,6 +136,13 @@ def comparison_system(law: Law, bounds: BodyBounds) -> LawComparison | None:
     )
 
 
+def idle_exponent(law: Law, schedule: Schedule) -> float:
+    """Lambda times the longest stretch without thrust: R decays by exp of minus it."""
+    gap = longest_zero_run(schedule)
+    decay = law.parameters.get("lambda", Fraction(0))
+    return 0.0 if gap is None else float(decay * (gap.off - gap.on))
+
+
 def certify_floor(
     law: Law,
     bounds: BodyBounds,
@@ -178,6 +188,8 @@ def certify_floor(
     system = comparison_system(law, bounds)
     if system is None:
         return None
+    if idle_exponent(law, schedule) > HOPELESS_EXPONENT:
+        options = replace(options, max_bins=1)
     if horizon is None and schedule.period is None:
         horizon = schedule.end
     run = FloorProof(system, schedule, horizon, options)

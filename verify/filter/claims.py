@@ -17,15 +17,15 @@ from ..certificates.format import Certificate
 from ..exact.rounding import digits_above, digits_below
 from ..schedule.zero_runs import longest_zero_run
 from ..verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict
-from .certify import FilterLowerBound
+from .certify import FilterLowerBound, idle_exponent
 from .converged import ConvergedFloor
 from .convergence import Convergence
 from .torque_bound import TorqueBound
 from .worst_found import WorstFound
 
 PAGE = "docs/theory-floor.md"
-HOPELESS_EXPONENT = 30
-"""Off-time over the filter's time constant beyond which no step is proved: R decays by 1e-13 and more."""
+FORGOTTEN = 10
+"""Lambda times an off-time after which what is left of R, below 1e-4 of it, is why no step is proved."""
 MUELLER = "comparison theorem of Mueller and Walter; docs/theory-floor.md"
 
 
@@ -300,11 +300,25 @@ def _shortfall(floor: FilterLowerBound) -> tuple[str, str]:
             "for all of them at once",
             "take k0 > 0",
         )
-    exponent = _idle_exponent(floor)
-    if floor.failed_at is not None and exponent > HOPELESS_EXPONENT:
+    gap = longest_zero_run(floor.schedule)
+    exponent = idle_exponent(floor.law, floor.schedule)
+    if floor.failed_at is not None and gap is not None and exponent > FORGOTTEN:
+        adaptive = "k0" in floor.law.parameters
+        then = (
+            "the gain k learns by it: next to nothing is certified of what it learns"
+            if adaptive
+            else "the gain of the next window is one over what is left"
+        )
+        if gap.on == 0:
+            return (
+                f"until the first window opens R decays by exp(-{exponent:.3g}) (lambda times "
+                f"{float(gap.off):.6g} s), and {then}",
+                "start the run with the first window (initial.time), or lower lambda "
+                f"(now {_decay(floor):g} 1/s)",
+            )
         return (
             f"while no window is open R decays by exp(-{exponent:.3g}) (lambda times the longest off-time), "
-            "and the gain of the next window is one over what is left",
+            f"and {then}",
             _filter_step(floor),
         )
     if floor.failed_at is not None and not floor.lost_angle:
@@ -325,16 +339,12 @@ def _shortfall(floor: FilterLowerBound) -> tuple[str, str]:
     )
 
 
-def _idle_exponent(floor: FilterLowerBound) -> float:
-    """Lambda times the longest stretch without thrust: R decays by exp of minus it."""
-    gap = longest_zero_run(floor.schedule)
-    decay = floor.law.parameters.get("lambda", Fraction(0))
-    return 0.0 if gap is None else float(decay * (gap.off - gap.on))
+def _decay(floor: FilterLowerBound) -> float:
+    return float(floor.law.parameters.get("lambda", Fraction(0)))
 
 
 def _filter_step(floor: FilterLowerBound) -> str:
-    decay = float(floor.law.parameters.get("lambda", Fraction(0)))
-    return f"lower lambda (now {decay:g} 1/s) or shorten the longest off-time"
+    return f"lower lambda (now {_decay(floor):g} 1/s) or shorten the longest off-time"
 
 
 def _undecided(

@@ -72,6 +72,18 @@ def test_a_filter_that_forgets_within_a_gap_is_undecided(decay):
         assert "lower lambda" in claim.next_step
 
 
+@pytest.mark.parametrize(
+    ("law", "words"), [(PERSISTENCE, "one over what is left"), (ADAPTIVE, "the gain k learns by it")]
+)
+def test_a_late_first_window_is_the_reason_and_the_start_the_remedy(law, words):
+    late = build_schedule([Window(F(1000), F(1003))], Hermite())
+    claim = by_key(answer(replace(QUESTION, law=law, schedule=late)))["filter.floor"]
+    assert claim.verdict is Verdict.UNDECIDED
+    assert "until the first window opens R decays by exp(-525)" in claim.reason
+    assert words in claim.reason
+    assert "initial.time" in claim.next_step
+
+
 def test_all_four_answers_about_the_floor_are_labelled():
     found = answer(replace(QUESTION, run_floor=(0.14947, 56.0), search=Search(samples=16, rounds=0)))
     quantities = {q.name: q for q in by_key(found)["filter.floor"].quantities}
