@@ -19,6 +19,7 @@ from pathlib import Path, PurePosixPath
 from tempfile import mkdtemp
 
 from ..errors import InputError
+from .whole_files import write_whole
 
 MANIFEST = "manifest.json"
 _AT_FDCWD = -100
@@ -59,7 +60,7 @@ def write_folder(
     folder.parent.mkdir(parents=True, exist_ok=True)
     partial = Path(mkdtemp(prefix=f".{folder.name}.", suffix=".partial", dir=folder.parent))
     try:
-        _fill(partial, everything)
+        _fill(partial, everything, folder)
         partial.chmod(0o755)
         if reason:
             _merge(partial, folder)
@@ -145,13 +146,14 @@ def _inside(name: str) -> bool:
     return not path.is_absolute() and ".." not in path.parts
 
 
-def _fill(folder: Path, files: Mapping[str, bytes]) -> None:
+def _fill(folder: Path, files: Mapping[str, bytes], goal: Path) -> None:
+    """Write files into a folder that will become, or go into, the goal."""
     for name in sorted(files):
         if not _inside(name):
             raise FolderError(f"{name!r} would be outside the report")
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(files[name])
+        write_whole(path, files[name], named=goal / name)
 
 
 def _merge(partial: Path, folder: Path) -> None:

@@ -7,21 +7,32 @@ from contextlib import suppress
 from pathlib import Path
 
 
-def write_whole(path: Path, data: bytes | str) -> None:
+def write_whole(path: Path, data: bytes | str, *, new: bool = False, named: Path | None = None) -> None:
     """Write a file beside its place and move it there; on failure nothing is left behind.
+
+    Parameters
+    ----------
+    path : where it goes
+    data : text is written as UTF-8
+    new : refuse a place that is taken
+    named : what an error calls it; the path itself without it
 
     Raises
     ------
     OSError
-        Naming `path`, if it cannot be written (a full disk, no permission, no such folder).
+        Naming the file, if it cannot be written (a full disk, no permission, no such folder, or taken).
     """
     partial = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         partial.write_bytes(data.encode() if isinstance(data, str) else data)
-        os.replace(partial, path)
+        if new:
+            os.link(partial, path)  # unlike a rename it fails where something stands
+            partial.unlink()
+        else:
+            os.replace(partial, path)
     except BaseException as error:
         with suppress(OSError):
             partial.unlink(missing_ok=True)
         if isinstance(error, OSError):
-            raise OSError(error.errno, error.strerror or str(error), str(path)) from error
+            raise OSError(error.errno, error.strerror or str(error), str(named or path)) from error
         raise

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from ..reports.whole_files import write_whole
 from .errors import ScenarioError
 
 TEMPLATE = """\
@@ -104,8 +105,7 @@ def write_new(path: Path, text: str) -> None:
         If it exists (it is never overwritten) or cannot be written.
     """
     try:
-        with path.open("x", encoding="utf-8") as stream:
-            stream.write(text)
+        write_whole(path, text, new=True)
     except FileExistsError:
         raise ScenarioError(str(path), "exists already: it is left as it is") from None
     except OSError as error:

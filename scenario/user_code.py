@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import inspect
 import re
+import signal
 import sys
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, redirect_stdout
 from functools import wraps
 from pathlib import Path
+from types import FrameType
 from typing import Any
 
 from .errors import ScenarioError
@@ -23,6 +27,7 @@ _REMEDIES = (
         ("not subscriptable", "'list'", "'tuple'", "list of"),
         "build vectors with casadi.vertcat, not as lists",
     ),
+    (("to_int",), "int(), range() and indices cannot take symbols: use casadi.floor or casadi.if_else"),
     (("recursion",), "a method calls itself without end"),
 )
 """What the words of an error point to, and the remedy."""
@@ -57,19 +62,46 @@ def _gist(message: str) -> str:
 def user_code(path: Path, where: str, name: str) -> Iterator[None]:
     """Run code of the user's file within: SystemExit and every exception become a `ScenarioError`.
 
-    What the code prints goes to standard error. An interrupt by the user passes through.
+    What the code prints goes to standard error. An interrupt by the user passes through; one that the
+    code raises itself does not.
     """
     try:
-        with redirect_stdout(sys.stderr):
+        with redirect_stdout(sys.stderr), _interrupts() as pressed:
             yield
-    except (KeyboardInterrupt, ScenarioError):
+    except ScenarioError:
         raise
+    except KeyboardInterrupt as error:
+        if pressed or threading.current_thread() is not threading.main_thread():
+            raise
+        raise complaint(error, path, where, name) from error
     except BaseException as error:  # whatever the user's own code does, sys.exit included
         raise complaint(error, path, where, name) from error
 
 
+@contextmanager
+def _interrupts() -> Iterator[list[int]]:
+    """Signals of an interrupt that arrive within; handled as they would be without."""
+    arrived: list[int] = []
+    before = signal.getsignal(signal.SIGINT)
+    if threading.current_thread() is not threading.main_thread() or not callable(before):
+        yield arrived
+        return
+
+    def handle(number: int, frame: FrameType | None) -> object:
+        arrived.append(number)
+        return before(number, frame)
+
+    signal.signal(signal.SIGINT, handle)
+    try:
+        yield arrived
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
 def guard_class(law_class: type, path: Path, where: str) -> None:
     """Put every method and property that the user's file defines for a class behind `user_code`."""
+    for name in PROPERTIES:
+        _require_property(law_class, name, path, where)
     for owner in law_class.__mro__:
         if owner.__module__ != law_class.__module__ or "_guarded" in vars(owner):
             continue
@@ -80,6 +112,20 @@ def guard_class(law_class: type, path: Path, where: str) -> None:
             if guarded is not None:
                 setattr(owner, name, guarded)
         owner._guarded = True  # type: ignore[attr-defined]
+
+
+PROPERTIES = ("parameters", "controller_states", "signals")
+"""What a law tells of itself as attributes, not as methods."""
+
+
+def _require_property(law_class: type, name: str, path: Path, where: str) -> None:
+    """Refuse a plain method where an attribute belongs, with its line."""
+    member = inspect.getattr_static(law_class, name, None)
+    if callable(member) and hasattr(member, "__code__") and member.__code__.co_filename == str(path):
+        raise ScenarioError(
+            f"{where}: {path.name} line {member.__code__.co_firstlineno}",
+            f"{law_class.__name__}.{name} is a method, and must be an attribute: write @property above it",
+        )
 
 
 def _guarded(member: Any, path: Path, where: str, name: str) -> Any:

@@ -14,7 +14,12 @@ from .files import read_text
 from .user_code import guard_class, user_code
 
 if TYPE_CHECKING:
+    from ..models.closed_loop import ClosedLoop
     from ..models.laws import Law
+
+
+TRIED = 32
+"""States at which a torque that is no number at the target is tried."""
 
 
 def load_law_class(path: Path, name: str, where: str) -> type[Law]:
@@ -69,18 +74,48 @@ def require_sound_law(law: Law, path: Path, where: str) -> None:
     from ..models.closed_loop import close_loop
 
     name = type(law).__name__
+    called: object = law.name  # a class of the user's may say anything
+    if not isinstance(called, str) or not called.strip():
+        raise ScenarioError(f"{where}: {path.name}", f"{name}.name must be a text, received {called!r}")
     with user_code(path, where, name):
         loop = close_loop(law)
+    with user_code(path, where, f"{name}.storage"):
+        _require_storage(loop)
     values = [*[1.0, 0, 0, 0, 0, 0, 0], *(float(s.initial) for s in law.controller_states)]
     body = [1.0, 0, 0, 1, 0, 1] * 2
     at = (values, [1.0, 0.0] + [0.0] * (loop.time.numel() - 2), list(loop.parameter_values()), body)
-    torque = np.array(loop.function("torque", ca.SX(loop.control.torque))(*at)).ravel()
+    function = loop.function("torque", ca.SX(loop.control.torque))
+    torque = np.array(function(*at)).ravel()
     if not np.isfinite(torque).all():
+        rng = np.random.default_rng(1)
+        others = rng.normal(size=(TRIED, 7))
+        others[:, :4] /= np.linalg.norm(others[:, :4], axis=1)[:, None]
+        found = [np.array(function([*row, *values[7:]], *at[1:])).ravel() for row in others]
+        if not any(np.isfinite(u).all() for u in found):
+            raise ScenarioError(
+                f"{where}: {path.name}",
+                f"{name}: the torque is {_numbers(torque)} N m at the target and at {TRIED} other states: "
+                "float() and functions of `math` turn a symbol into nan; use casadi.sin, casadi.sqrt, ...",
+            )
         raise ScenarioError(
             f"{where}: {path.name}",
             f"{name}: the torque is {_numbers(torque)} N m (0/0) at the target attitude, quaternion "
             "(1, 0, 0, 0) at rest, where it must hold the body: add a small number to what is divided by, "
             "or use casadi.if_else",
+        )
+
+
+def _require_storage(loop: ClosedLoop) -> None:
+    """Refuse a storage function that is no expression."""
+    import casadi as ca
+
+    found: object = loop.law.storage(
+        loop.plant, loop.time_symbols, loop.controller_states, loop.parameter_symbols
+    )
+    if found is not None and not isinstance(found, (ca.SX, ca.DM, int, float)):
+        raise TypeError(
+            f"must return an expression such as casadi.dot(plant.w, plant.J @ plant.w), or None; "
+            f"received {type(found).__name__}"
         )
 
 

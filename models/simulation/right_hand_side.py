@@ -21,6 +21,8 @@ TINY = 1e-300
 """Keeps a quotient by no progress finite."""
 HOPELESS = 50
 """A run that at its pace would take this many times MAX_EVALUATIONS stops at once."""
+AHEAD = 1e-9
+"""How far ahead of a state, relative to the time, a law that is no number is looked for."""
 LAST_STEPS, GROWTH = 50, 10.0
 """A state that grew so much within the last steps before their size vanished escapes; else they are stiff."""
 
@@ -80,13 +82,16 @@ class RightHandSide:
         """
         from scipy.integrate import solve_ivp
 
+        field = self._in_phase(phase, horizon)
+        _require_number(field, float(phase.start), 0.0, state)
         with np.errstate(over="ignore", invalid="ignore"):  # a trial step may overshoot: it is refused
             solution = solve_ivp(
-                self._in_phase(phase, horizon), (0.0, float(phase.end - phase.start)), state,
+                field, (0.0, float(phase.end - phase.start)), state,
                 method="DOP853", rtol=rtol, atol=atol, dense_output=True,
             )  # fmt: skip
         if not solution.success or not np.all(np.isfinite(solution.y[:, -1])):
             at = float(phase.start) + float(solution.t[-1])
+            _require_number(field, float(phase.start), float(solution.t[-1]), solution.y[:, -1])
             raise SimulationError(_why_stopped(self.state_names, at, solution.y))
         return Passage(solution.t, solution.y, solution.sol)
 
@@ -119,6 +124,26 @@ class RightHandSide:
             f"{pace}: its quickest motion is far quicker than its horizon is long; give a shorter horizon, "
             "or slower parameters"
         )
+
+
+def _require_number(field: Callable[[float, Array], Array], start: float, t: float, state: Array) -> None:
+    """Refuse a state, or one just ahead of it, at which the law is no number.
+
+    Raises
+    ------
+    SimulationError
+        With the instant and the state.
+    """
+    if not np.all(np.isfinite(state)):
+        return
+    rate = field(t, state)
+    if np.all(np.isfinite(rate)) and np.all(np.isfinite(field(t, state + AHEAD * max(1.0, t) * rate))):
+        return
+    values = [", ".join(f"{x:.6g}" for x in part) for part in (state[:4], state[4:7])]
+    raise SimulationError(
+        f"the run stopped at t = {start + t:.6g} s: the law is not a number there (0/0, or a function "
+        f"outside its range), at quaternion ({values[0]}), rate ({values[1]}) rad/s"
+    )
 
 
 def _why_stopped(names: tuple[str, ...], time: float, states: Array) -> str:

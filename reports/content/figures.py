@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ..numbers import unit_text
+from ..whole_files import write_whole
 from .blocks import Axis, Chart, Line
 from .escape import east_asian_font, font_names, printable
 from .ticks import log_ticks
@@ -86,9 +87,9 @@ def pdf_figures(svgs: Mapping[str, bytes]) -> dict[str, bytes]:
     out: dict[str, bytes] = {}
     with tempfile.TemporaryDirectory() as folder:
         source = Path(folder) / "figure.typ"
-        source.write_text(page + '#image("drawing.svg")', encoding="utf-8")
+        write_whole(source, page + '#image("drawing.svg")')
         for name, svg in svgs.items():
-            (Path(folder) / "drawing.svg").write_bytes(svg)
+            write_whole(Path(folder) / "drawing.svg", svg)
             out[name.removesuffix(".svg") + ".pdf"] = typst.compile(
                 source, root=folder, format="pdf", timestamp=0, **options
             )

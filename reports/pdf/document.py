@@ -15,6 +15,7 @@ from ..content.escape import font_folders, font_names
 from ..content.heading import Heading
 from ..content.names import FullNames
 from ..content.wording import short
+from ..whole_files import write_whole
 from .blocks import spoken, words
 
 
@@ -25,12 +26,12 @@ def pdf_document(heading: Heading, chapters: tuple[Chapter, ...], drawings: Mapp
     with tempfile.TemporaryDirectory() as folder:
         root = Path(folder)
         data = json.dumps(_data(heading, chapters), ensure_ascii=False)
-        (root / "data.json").write_text(data, encoding="utf-8")
+        write_whole(root / "data.json", data)
         source = files("intermit.reports").joinpath("templates/report.typ").read_text(encoding="utf-8")
-        (root / "report.typ").write_text(source, encoding="utf-8")
+        write_whole(root / "report.typ", source)
         for name, drawing in drawings.items():
             if name.endswith(".svg"):
-                (root / name).write_bytes(drawing)
+                write_whole(root / name, drawing)
         options: Any = {"ignore_system_fonts": True, "font_paths": list(font_folders())}
         document: bytes = typst.compile(
             root / "report.typ", root=root, format="pdf", timestamp=_instant(heading.date), **options

@@ -10,7 +10,9 @@ from pathlib import Path
 
 import intermit
 import pytest
+from intermit.reports.folder import write_folder
 from intermit.reports.whole_files import write_whole
+from intermit.scenario import ScenarioError, write_template
 
 EXAMPLES = Path(intermit.__file__).parent / "examples"
 
@@ -37,6 +39,30 @@ def test_a_full_disk_keeps_the_old_file_and_names_it(tmp_path, monkeypatch):
     assert caught.value.filename == str(path)
     assert path.read_text() == "old"
     assert os.listdir(tmp_path) == ["a.json"]
+
+
+def test_a_new_file_takes_no_place_that_is_taken(tmp_path):
+    path = tmp_path / "a.toml"
+    write_whole(path, "first", new=True)
+    with pytest.raises(FileExistsError):
+        write_whole(path, "second", new=True)
+    assert path.read_text() == "first"
+    assert os.listdir(tmp_path) == ["a.toml"]
+
+
+def test_a_full_disk_leaves_no_report_and_no_scenario(tmp_path, monkeypatch):
+    def half(path, data):
+        with path.open("wb") as stream:
+            stream.write(data[: len(data) // 2])
+        full_disk()
+
+    monkeypatch.setattr(Path, "write_bytes", half)
+    with pytest.raises(OSError, match="No space left") as caught:
+        write_folder(tmp_path / "report", {"index.html": b"page"})
+    assert caught.value.filename == str(tmp_path / "report" / "index.html")
+    with pytest.raises(ScenarioError, match=r"own\.toml: cannot be written: No space left"):
+        write_template(tmp_path / "own.toml")
+    assert os.listdir(tmp_path) == []
 
 
 @pytest.mark.slow

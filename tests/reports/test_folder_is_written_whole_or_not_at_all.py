@@ -33,7 +33,7 @@ def test_an_interrupted_run_leaves_the_old_report(
     target = tmp_path / "out"
     write_folder(target, {"a": b"old"})
 
-    def interrupted(folder: Path, files: object) -> None:
+    def interrupted(folder: Path, files: object, _: Path) -> None:
         (folder / "a").write_bytes(b"half")
         raise KeyboardInterrupt
 

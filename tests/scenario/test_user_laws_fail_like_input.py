@@ -73,6 +73,10 @@ WRONG = {
     "scalar": ("return Control(plant.b0)", "shape (3,)"),
     "0/0": ("return Control(-plant.bv / ca.norm_2(plant.bv))", "at the target attitude"),
     "recursion": ("return self.control(plant, time, states, p)", "without end"),
+    "own interrupt": ("raise KeyboardInterrupt", "line 20: Own.control: KeyboardInterrupt"),
+    "math": ("import math; return Control(-math.sin(plant.b0) * plant.bv)", "use casadi.sin"),
+    "float": ("return Control(-float(plant.b0) * plant.bv)", "turn a symbol into nan"),
+    "int": ("return Control(-int(plant.b0) * plant.bv)", "casadi.floor"),
     "stray symbol": ("return Control(plant.bv * ca.SX.sym('z'))", "uses the symbol z"),
 }
 
@@ -111,6 +115,44 @@ def test_a_property_that_raises_is_named(attempt, member):
     assert code == 2
     assert f"Own.{member}" in said.err
     assert "line" in said.err
+
+
+EXTRAS = {
+    "name": ("name = 5", "Own.name must be a text, received 5"),
+    "list as V": ("def storage(self, *_):\n        return [1]", "or None; received list"),
+    "states": (
+        "def controller_states(self):\n        return ()",
+        "17: Own.controller_states is a method",
+    ),
+    "signals": ("def signals(self):\n        return ()", "line 17: Own.signals is a method"),
+    "parameters": ("def parameters(self):\n        return {}", "write @property above it"),
+}
+
+
+@pytest.mark.parametrize("case", EXTRAS)
+def test_a_wrong_member_is_bad_input_in_one_line(attempt, case):
+    extra, words = EXTRAS[case]
+    code, said = attempt(extra=extra)
+    assert code == 2
+    assert words in said.err
+    assert said.err.count("\n") == 1
+
+
+def test_a_press_of_ctrl_c_within_a_law_is_an_interrupt(attempt):
+    """The partner of the law that raises one itself: here the signal arrives while it runs."""
+    code, said = attempt("import os, signal; os.kill(os.getpid(), signal.SIGINT); " + GOOD)
+    assert code == 130
+    assert "interrupted" in said.err
+
+
+def test_a_law_that_is_no_number_at_its_start_is_named_with_the_state(attempt):
+    """1 at the target, no number beyond 51 deg: the run starts at 60 deg."""
+    root = 'return Control(-ca.sqrt(plant.b0 - 0.9) * plant.bv - p["kd"] * plant.w)'
+    code, said = attempt(root, command=("check", "--no-search", "--no-margins"))
+    assert code == 3
+    text = " ".join(said.out.split())
+    assert "the law is not a number there" in text
+    assert "quaternion (0.866025, 0.288675, 0.288675, 0.288675)" in text
 
 
 def test_an_error_that_comes_late_is_still_bad_input(attempt):
