@@ -1,12 +1,14 @@
-"""Which argument a lower bound comes from: what its certificate has to write down."""
+"""A lower bound and the argument that it comes from: all that its certificate has to write down."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import final
 
+from ...verify.exact.rounding import rounded_down
 from .potential.path import PathBound
+from .prepare import Measured
 from .sets.momentum_sets import MomentumSet
 from .windows.coast import Coast
 from .windows.components import ComponentBounds, Widths
@@ -20,11 +22,16 @@ class MomentumArgument:
 
     Attributes
     ----------
-    momenta : MomentumSet
-        Set whose gauge measures momentum.
+    measured : Measured
+        Set whose gauge measures momentum, and the sizes of the transfer's ends.
     """
 
-    momenta: MomentumSet
+    measured: Measured
+
+    @property
+    def momenta(self) -> MomentumSet:
+        """The set."""
+        return self.measured.momenta
 
 
 @final
@@ -57,17 +64,25 @@ class PathArgument:
 
     Attributes
     ----------
-    momenta : MomentumSet
-        Set whose gauge measures momentum.
+    measured : Measured
+        Set whose gauge measures momentum, and the sizes of the transfer's ends.
     path : PathBound
         Travel to each quaternion of the target, from where the coast leads.
-    departure : Departure
+    departure : StartSet
         The coast, and how far torque can take the body from it.
+    instant : Fraction
+        Until when momentum is counted from the start, and after it from the end, s.
     """
 
-    momenta: MomentumSet
+    measured: Measured
     path: PathBound
     departure: StartSet
+    instant: Fraction
+
+    @property
+    def momenta(self) -> MomentumSet:
+        """The set."""
+        return self.measured.momenta
 
 
 @final
@@ -97,3 +112,28 @@ class ComponentsArgument:
 
 
 Argument = MomentumArgument | PathArgument | ComponentsArgument
+
+
+@final
+@dataclass(frozen=True)
+class NamedBound:
+    """One valid lower bound.
+
+    Attributes
+    ----------
+    name : str
+        Which argument it comes from.
+    exact : Fraction
+        The bound; `value` is it rounded down.
+    argument : Argument
+        Its proof, for a certificate.
+    """
+
+    name: str
+    exact: Fraction
+    argument: Argument = field(repr=False)
+
+    @property
+    def value(self) -> float:
+        """The bound as a float, rounded down."""
+        return rounded_down(self.exact)

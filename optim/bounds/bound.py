@@ -6,53 +6,22 @@ smaller p takes the start to the target. Several bounds are valid at once; the l
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
 
-import numpy as np
-
-from ...verify.exact.rounding import rounded_down
 from ..problem import TransferProblem
-from .argument import Argument, ComponentsArgument, MomentumArgument, PathArgument, StartSet
-from .potential.cache import remembered
-from .potential.path import PathBound, PathOptions, path_bound
-from .potential.separation import Target
-from .sets.chart import Quaternion, arc_to_identity
+from .argument import ComponentsArgument, NamedBound
+from .potential.path import PathOptions
+from .prepare import Measured, Prepared
+from .proof import by_momentum, by_path, path_of
 from .sets.gauge import GaugeSet, invariant_set, longest_vertex
-from .sets.momentum_sets import MomentumSet, UnitBall
-from .windows.coast import Coast, coasts
+from .sets.momentum_sets import UnitBall
 from .windows.components import TransferSides, Widths, component_bounds, peak_from_components
-from .windows.deviation import deviation_above, growth_of_deviations
-from .windows.travel import WindowTravel, least_peak, momentum_peak
+from .windows.travel import WindowTravel
 
 TRIALS = (1.0, 1.03, 1.07, 1.12, 1.18, 1.25, 1.35, 1.5, 1.75)
 """Trial peaks of the bound by components over the best other bound: any are valid, the best is kept."""
-
-
-@final
-@dataclass(frozen=True)
-class NamedBound:
-    """One valid lower bound.
-
-    Attributes
-    ----------
-    name : str
-        Which argument it comes from.
-    exact : Fraction
-        The bound; `value` is it rounded down.
-    argument : Argument
-        Its proof, for a certificate.
-    """
-
-    name: str
-    exact: Fraction
-    argument: Argument = field(repr=False)
-
-    @property
-    def value(self) -> float:
-        """The bound as a float, rounded down."""
-        return rounded_down(self.exact)
 
 
 @final
@@ -88,6 +57,34 @@ class LowerBound:
 def certified_lower_bound(problem: TransferProblem, *, options: PathOptions | None = None) -> LowerBound:
     """Bound the least peak torque of a transfer from below, proved.
 
+    Claims, of each bound: no torque history within p w(t), p smaller than the bound, takes the body
+    from the start to the target within the terminal tolerances at the transfer time, by whatever
+    controller. The inertia is taken as stated; its tolerance is not covered.
+
+    Parameters
+    ----------
+    problem : TransferProblem
+        Inertia (kg m^2), window profile, start, target, norm and tolerances, all exact.
+    options : PathOptions or None
+        Effort of the potentials; whatever it is, the bounds are valid.
+
+    Returns
+    -------
+    LowerBound
+        The largest bound and all others, in the norm's unit (N m, or N for thrusters), each with the
+        argument from which `certificate.peak_certificate` writes its certificate.
+
+    Raises
+    ------
+    ValueError
+        If the terminal tolerance is too large for a chart of attitudes, or a norm has more thrusters
+        than corners can be listed of.
+
+    References
+    ----------
+    docs/lower-bounds.md has the theorems with their proofs: momentum and travel through windows, the
+    invariant set of a torque set, potentials on charts of short paths, components.
+
     Notes
     -----
     Euclidean norm: momentum, and shortest path in the metric |J w|, from the start or, if it
@@ -96,28 +93,30 @@ def certified_lower_bound(problem: TransferProblem, *, options: PathOptions | No
     component from rest to exact rest, components.
     """
     options = options or PathOptions()
+    prepared, ball = Prepared(problem), UnitBall(problem.body)
     if problem.norm.is_ball:
-        bounds = _euclidean(problem, options)
+        bounds = _momentum_and_path(prepared.measured(ball), options, ("momentum", "shortest path"))
     else:
         # The invariant set lies in the ball of the longest torque: little is lost by a coarse potential here.
-        bounds = _euclidean(problem, options.coarse())
-        longest = longest_vertex(problem.norm)
-        bounds = [replace(b, name=f"Euclidean {b.name}", exact=b.exact / longest) for b in bounds]
-        bounds += _by_invariant_set(problem, options)
+        within = prepared.measured(ball, longest_vertex(problem.norm))
+        names = ("Euclidean momentum", "Euclidean shortest path")
+        bounds = _momentum_and_path(within, options.coarse(), names)
+        bounds += _by_invariant_set(prepared, options)
     ordered = tuple(sorted(bounds, key=lambda bound: -bound.exact))
     return LowerBound(ordered[0], ordered, problem.norm.unit)
 
 
-def _euclidean(problem: TransferProblem, options: PathOptions) -> list[NamedBound]:
-    """Bounds for |torque| <= p w."""
-    return _momentum_and_path(problem, UnitBall(problem.body), options, ("momentum", "shortest path"))
+def _momentum_and_path(measured: Measured, options: PathOptions, names: tuple[str, str]) -> list[NamedBound]:
+    """Both bounds that a set of momenta gives."""
+    return [by_momentum(measured, names[0]), by_path(measured, options, names[1])]
 
 
-def _by_invariant_set(problem: TransferProblem, options: PathOptions) -> list[NamedBound]:
+def _by_invariant_set(prepared: Prepared, options: PathOptions) -> list[NamedBound]:
     """Bounds through the set that contains the torques and is invariant under free motion."""
+    problem = prepared.problem
     momenta = invariant_set(problem.body, problem.norm)
     names = ("momentum in the invariant set", "invariant set")
-    result = _momentum_and_path(problem, momenta, options, names)
+    result = _momentum_and_path(prepared.measured(momenta), options, names)
     at_rest = problem.starts_at_rest and not problem.terminal.rate
     if problem.norm.is_cube and at_rest and options.components:
         result += _by_components(problem, momenta, options, max(bound.exact for bound in result))
@@ -145,74 +144,3 @@ def _by_components(
     peaks = [peak_from_components(sides, bounds, beta, path.travel) for bounds in found]
     peak, bounds = max(zip(peaks, found, strict=True), key=lambda pair: pair[0])
     return [NamedBound("components", peak, ComponentsArgument(momenta, path, beta, bounds, sides.instant))]
-
-
-def _momentum_and_path(
-    problem: TransferProblem, momenta: MomentumSet, options: PathOptions, names: tuple[str, str]
-) -> list[NamedBound]:
-    """Both bounds that a set of momenta gives."""
-    windows = WindowTravel(problem.window)
-    H0 = start_momentum(problem)
-    end = momenta.size_of_rate(problem.terminal.rate)
-    absorbed = momentum_peak(windows, momenta.size_below(H0), end)
-    departure = best_departure(problem, momenta, windows)
-    coast = departure.coast
-    path = path_of(problem, coast.attitude, momenta, options)
-    peak = least_peak(
-        windows,
-        path.travel - departure.slack,
-        momenta.size_above(H0),
-        end,
-        after=coast.until,
-        deviation=departure.deviation,
-    )
-    name = f"{names[1]} after a coast" if coast.until else names[1]
-    return [
-        NamedBound(names[0], absorbed, MomentumArgument(momenta)),
-        NamedBound(name, peak.value, PathArgument(momenta, path, departure)),
-    ]
-
-
-def best_departure(problem: TransferProblem, momenta: MomentumSet, windows: WindowTravel) -> StartSet:
-    """Choose the coast after which straight ways, a guess of the shortest, ask for the largest peak."""
-    H0 = start_momentum(problem)
-    start, end = momenta.size_above(H0), momenta.size_of_rate(problem.terminal.rate)
-    growth = growth_of_deviations(momenta, H0)
-
-    def promise(coast: Coast) -> Fraction:
-        travel = Fraction(_straight(momenta, coast, problem.signs))
-        deviation = deviation_above(windows, coast.until, growth, cells=4)
-        return least_peak(windows, travel, start, end, after=coast.until, deviation=deviation).value
-
-    best = max((coast for coast in coasts(problem) if growth.allows(coast.until)), key=promise)
-    deviation = deviation_above(windows, best.until, growth)
-    return StartSet(best, growth, deviation, momenta.size_of_rate(best.turn))
-
-
-def _straight(momenta: MomentumSet, coast: Coast, signs: tuple[int, ...]) -> float:
-    """Travel of the shorter rotation about a fixed axis."""
-    unit = np.array([float(c) for c in coast.attitude])
-    unit /= np.linalg.norm(unit)
-    axis = unit[1:] if unit[1:].any() else np.array([1.0, 0.0, 0.0])
-    return min(momenta.straight_travel(axis, 2 * arc_to_identity(sign * unit)) for sign in signs)
-
-
-def start_momentum(problem: TransferProblem) -> tuple[Fraction, Fraction, Fraction]:
-    """J w at the start, exactly."""
-    rows = problem.body.exact_inertia
-    H = [sum((row[k] * problem.rate[k] for k in range(3)), Fraction(0)) for row in rows]
-    return H[0], H[1], H[2]
-
-
-def path_of(
-    problem: TransferProblem, attitude: Quaternion, momenta: MomentumSet, options: PathOptions
-) -> PathBound:
-    """Path bound from an attitude to the problem's target, remembered."""
-    target = Target(problem.terminal.attitude)
-    key = (momenta.key(), attitude, target, problem.signs, options)
-
-    def compute() -> PathBound:
-        signs = problem.signs
-        return path_bound(problem.body, attitude, target, momenta, signs=signs, options=options)
-
-    return remembered(key, compute)

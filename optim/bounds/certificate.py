@@ -13,17 +13,17 @@ from fractions import Fraction
 from ...models.norms import EUCLIDEAN, LARGEST_COMPONENT, Norm
 from ...verify import checker
 from ...verify.certificates import Certificate, certificate_text
-from ...verify.exact.ball import length
 from ...verify.exact.rounding import grid_above, grid_below, rounded_down
 from ..problem import TransferProblem
-from .argument import Argument, ComponentsArgument, MomentumArgument, PathArgument
-from .bound import LowerBound, NamedBound, start_momentum
+from .argument import ComponentsArgument, MomentumArgument, NamedBound, PathArgument
+from .bound import LowerBound
 from .potential.path import PathBound
 from .potential.separation import Separation
+from .prepare import Measured
 from .sets.gauge import GaugeSet
 from .sets.momentum_sets import MomentumSet, greatest_inertia_above, least_inertia_below
 from .sets.polynomials import exponents
-from .windows.travel import WindowTravel, least_peak
+from .windows.travel import peak_at
 
 KIND = "peak-lower-bound"
 _BITS = 120
@@ -39,18 +39,16 @@ def peak_certificate(problem: TransferProblem, bound: NamedBound) -> Certificate
     if not has_certificate(problem.norm):
         return None
     argument = bound.argument
-    scale = _scale(problem, argument)
     witness: dict[str, object] = {"rows": _rows(argument.momenta, problem)}
     if isinstance(argument, MomentumArgument):
-        end = _up(argument.momenta.size_of_rate(problem.terminal.rate) / scale[0])
-        witness |= {"argument": "momentum", "end": end}
-        exact = _absorbed(problem, argument, scale, end)
+        exact = _absorbed(argument.measured, witness)
     else:
-        travel = _down(argument.path.travel / scale[1] * _LESS)
+        radius = argument.measured.radius[1] if isinstance(argument, PathArgument) else Fraction(1)
+        travel = _down(argument.path.travel / radius * _LESS)
         witness |= {"travel": travel, "speed": _speed_multipliers(argument.momenta, problem)}
-        witness["separations"] = _separations(problem, argument.path, scale[1])
+        witness["separations"] = _separations(problem, argument.path, radius)
         if isinstance(argument, PathArgument):
-            exact = _allowing(problem, argument, scale, travel, witness)
+            exact = _allowing(argument, travel, witness)
         else:
             exact = bound.exact * _LESS
             witness |= _component_witness(argument)
@@ -96,13 +94,6 @@ def _torque(norm: Norm) -> dict[str, object]:
     return {"by": LARGEST_COMPONENT.key} if norm.is_cube else {"by": "thrusters", "axes": norm.axes}
 
 
-def _scale(problem: TransferProblem, argument: Argument) -> tuple[Fraction, Fraction]:
-    """Radius of the ball of momenta that holds the torques, enclosed; 1 where the set holds them itself."""
-    if isinstance(argument.momenta, GaugeSet) or problem.norm.is_ball:
-        return Fraction(1), Fraction(1)
-    return max(length(t) for t in problem.norm.corners())
-
-
 def _rows(momenta: MomentumSet, problem: TransferProblem) -> list[tuple[Fraction, Fraction]]:
     """Pairs (a, b) of the rows a I + b J^-1."""
     rows = [(Fraction(1), Fraction(0))]
@@ -126,39 +117,38 @@ def _speed_multipliers(momenta: MomentumSet, problem: TransferProblem) -> list[F
     return ball if values[0] <= values[1] else both
 
 
-def _absorbed(
-    problem: TransferProblem, argument: MomentumArgument, scale: tuple[Fraction, Fraction], end: Fraction
-) -> Fraction:
-    """Peak that the momentum argument gives with a size of the end rounded up."""
-    total = WindowTravel(problem.window).total
-    start = argument.momenta.size_below(start_momentum(problem)) / scale[1]
-    return (start - end) / total if total else Fraction(0)
+def _absorbed(measured: Measured, witness: dict[str, object]) -> Fraction:
+    """Peak that the momentum argument gives with a size of the end rounded up, which enters the witness."""
+    low, high = measured.radius
+    end = _up(measured.end / low)
+    witness |= {"argument": "momentum", "end": end}
+    total = measured.prepared.windows.total
+    return (measured.start[0] / high - end) / total if total else Fraction(0)
 
 
-def _allowing(
-    problem: TransferProblem,
-    argument: PathArgument,
-    scale: tuple[Fraction, Fraction],
-    travel: Fraction,
-    witness: dict[str, object],
-) -> Fraction:
+def _allowing(argument: PathArgument, travel: Fraction, witness: dict[str, object]) -> Fraction:
     """Peak that the path argument gives with a travel rounded down; enters instant and end in the witness."""
-    start = _up(argument.momenta.size_above(start_momentum(problem)) / scale[0])
-    end = _up(argument.momenta.size_of_rate(problem.terminal.rate) / scale[0])
-    departure, windows = argument.departure, WindowTravel(problem.window)
-    after, slack = departure.coast.until, _up(departure.slack / scale[0])
-    deviation = _up(departure.deviation / _LESS)
-    found = least_peak(windows, travel - slack, start, end, after=after, deviation=deviation)
-    witness |= {"argument": "path", "instant": found.instant, "end": end}
-    if after:
+    measured, departure = argument.measured, argument.departure
+    radius, coast = measured.radius[0], departure.coast
+    start, end, slack = (_up(x / radius) for x in (measured.start[1], measured.end, departure.slack))
+    witness |= {"argument": "path", "instant": argument.instant, "end": end}
+    if coast.until:
         witness["coast"] = {
-            "until": after,
-            "attitude": departure.coast.attitude,
-            "turn": departure.coast.turn,
+            "until": coast.until,
+            "attitude": coast.attitude,
+            "turn": coast.turn,
             "slack": slack,
             "growth": [departure.growth.distance, departure.growth.momentum],
         }
-    return found.value
+    return peak_at(
+        measured.prepared.windows,
+        argument.instant,
+        travel - slack,
+        start,
+        end,
+        after=coast.until,
+        deviation=_up(departure.deviation / _LESS),
+    )
 
 
 def _component_witness(argument: ComponentsArgument) -> dict[str, object]:

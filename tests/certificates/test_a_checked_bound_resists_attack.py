@@ -11,17 +11,18 @@ import pytest
 from intermit.models.norms import EUCLIDEAN, LARGEST_COMPONENT
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import PiecewisePolynomial
-from intermit.optim.bounds.argument import PathArgument
-from intermit.optim.bounds.bound import NamedBound, best_departure, start_momentum
+from intermit.optim.bounds.argument import NamedBound, PathArgument
 from intermit.optim.bounds.certificate import peak_certificate
 from intermit.optim.bounds.potential.path import PathBound
 from intermit.optim.bounds.potential.prove import BranchAndBound
 from intermit.optim.bounds.potential.separation import Target, proved_separation
+from intermit.optim.bounds.prepare import Prepared
+from intermit.optim.bounds.proof import best_departure
 from intermit.optim.bounds.sets.chart import arc_to_identity, chart_between
 from intermit.optim.bounds.sets.gauge import invariant_set
 from intermit.optim.bounds.sets.momentum_sets import UnitBall
 from intermit.optim.bounds.sets.polynomials import AXES, RING
-from intermit.optim.bounds.windows.travel import WindowTravel, least_peak
+from intermit.optim.bounds.windows.travel import least_peak
 from intermit.optim.peak import MultiStart, Refinement, minimum_peak
 from intermit.optim.problem import Terminal, TransferProblem, quaternion_from_axis_angle
 from intermit.verify import checker
@@ -52,8 +53,8 @@ def bound_by_a_linear_potential(case):
     """A weak bound that takes no fitting: its certificate has all that the best one has."""
     ball = case.norm.is_ball
     momenta = UnitBall(case.body) if ball else invariant_set(case.body, case.norm)
-    windows = WindowTravel(case.window)
-    departure = best_departure(case, momenta, windows)
+    measured = Prepared(case).measured(momenta)
+    departure = best_departure(measured)
     q = departure.coast.attitude
     arc = arc_to_identity(np.array([float(c) for c in q]) / float(sum(c * c for c in q)) ** 0.5)
     chart = chart_between(q, 1.6 * arc)
@@ -70,13 +71,12 @@ def bound_by_a_linear_potential(case):
     )
     assert found.travel > 0
     path = PathBound(found.travel, ((1, found), (-1, None)))
-    start, end = momenta.size_above(start_momentum(case)), Fraction(0)
     peak = least_peak(
-        windows, path.travel - departure.slack, start, end,
+        measured.prepared.windows, path.travel - departure.slack, measured.start[1], Fraction(0),
         after=departure.coast.until, deviation=departure.deviation,
-    ).value  # fmt: skip
-    assert peak > 0
-    return NamedBound("path", peak, PathArgument(momenta, path, departure))
+    )  # fmt: skip
+    assert peak.value > 0
+    return NamedBound("path", peak.value, PathArgument(measured, path, departure, peak.instant))
 
 
 CASES = {

@@ -17,9 +17,9 @@ from intermit.models.norms import BODY_AXES, EUCLIDEAN, LARGEST_COMPONENT, Norm,
 from intermit.models.schedule import Hermite, Window, build_schedule
 from intermit.models.simulation import peak_torque, simulate, torque_metrics
 from intermit.optim.bounds import certified_lower_bound
-from intermit.optim.bounds.argument import MomentumArgument
-from intermit.optim.bounds.bound import NamedBound
+from intermit.optim.bounds.argument import MomentumArgument, NamedBound
 from intermit.optim.bounds.certificate import peak_certificate
+from intermit.optim.bounds.prepare import Prepared
 from intermit.optim.bounds.sets.gauge import invariant_set
 from intermit.optim.peak import MultiStart, NonlinearProgram, Refinement, Standing, minimum_peak
 from intermit.optim.peak.search.minimum_impulse import minimum_impulse
@@ -129,7 +129,7 @@ def test_its_bound_is_proved_and_its_certificate_refused():
     momenta = invariant_set(J1, DISC)
     # every torque of unit effort lies in the set: its first row is the ball around the corners
     assert momenta.levels[0] == corners
-    bound = NamedBound("momentum", F(1), MomentumArgument(momenta))
+    bound = NamedBound("momentum", F(1), MomentumArgument(Prepared(spinning).measured(momenta)))
     assert peak_certificate(spinning, bound) is None
     assert peak_certificate(replace(spinning, norm=LARGEST_COMPONENT), bound) is not None
 

@@ -166,6 +166,6 @@ def invariant_set(body: RigidBody, norm: Norm) -> GaugeSet:
     return GaugeSet(body, tuple(rows), tuple(levels), square_root(square)[1])
 
 
-def longest_vertex(norm: Norm) -> Fraction:
-    """Upper bound of the length of a torque of unit peak."""
-    return max(length(t)[1] for t in norm.corners())
+def longest_vertex(norm: Norm) -> tuple[Fraction, Fraction]:
+    """Length of the longest torque of unit peak, enclosed."""
+    return max(length(t) for t in norm.corners())

@@ -144,11 +144,8 @@ def least_peak(
     if windows.total == 0:
         return best
     s = max(windows.instant(windows.total / 2), after)
-    saved = windows.opened_area(after) - deviation
     for _ in range(12):
-        area = windows.area(s) - saved
-        free = start * (s - after) + end * (windows.horizon - s)
-        value = (travel - free) / area if area > 0 else Fraction(0)
+        value = peak_at(windows, s, travel, start, end, after=after, deviation=deviation)
         if value <= best.value * (1 + Fraction(1, 10**12)):
             break
         best = PeakFromTravel(value, s)
@@ -158,6 +155,22 @@ def least_peak(
         crossing = (windows.total + (end - start) / near) / 2
         s = max(min(windows.instant(crossing), windows.horizon), after)
     return best
+
+
+def peak_at(
+    windows: WindowTravel,
+    instant: Fraction,
+    travel: Fraction,
+    start: Fraction,
+    end: Fraction,
+    *,
+    after: Fraction,
+    deviation: Fraction,
+) -> Fraction:
+    """Lower bound of p with momentum counted from the start until an instant, then from the end."""
+    area = windows.area(instant) - windows.opened_area(after) + deviation
+    free = start * (instant - after) + end * (windows.horizon - instant)
+    return (travel - free) / area if area > 0 else Fraction(0)
 
 
 def momentum_peak(windows: WindowTravel, start: Fraction, end: Fraction) -> Fraction:

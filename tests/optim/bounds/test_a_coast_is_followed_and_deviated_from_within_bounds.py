@@ -9,7 +9,8 @@ import pytest
 from intermit.models.norms import EUCLIDEAN, LARGEST_COMPONENT, thrusters
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import PiecewisePolynomial
-from intermit.optim.bounds.bound import best_departure, start_momentum
+from intermit.optim.bounds.prepare import Prepared, start_momentum
+from intermit.optim.bounds.proof import best_departure
 from intermit.optim.bounds.sets.gauge import invariant_set
 from intermit.optim.bounds.sets.momentum_sets import UnitBall
 from intermit.optim.bounds.windows.coast import coasts
@@ -253,7 +254,7 @@ def test_a_coast_of_no_use_is_not_followed(arm):
     """Thrusters that hardly turn the body about two axes: deviations would grow beyond any number."""
     rows = [[0, 0, 1], [0, 0, -1], [arm, 0, 0], ["-" + arm, 0, 0], [0, arm, 0], [0, "-" + arm, 0]]
     case = problem(LONG, RATES[0], thrusters(rows))
-    departure = best_departure(case, set_of(case), WindowTravel(WINDOW))
+    departure = best_departure(Prepared(case).measured(set_of(case)))
     assert departure.growth.allows(departure.coast.until)
     assert not departure.growth.allows(Fraction(1))
     near = RigidBody.from_rows([[1, 0, 0], [0, 1, 0], [0, 0, 1 + Fraction(1, 10**200)]])

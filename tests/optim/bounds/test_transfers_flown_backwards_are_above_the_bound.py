@@ -14,7 +14,8 @@ from intermit.models.norms import EUCLIDEAN, LARGEST_COMPONENT, thrusters
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import PiecewisePolynomial
 from intermit.optim.bounds import PathOptions, certified_lower_bound
-from intermit.optim.bounds.bound import path_of, start_momentum
+from intermit.optim.bounds.prepare import start_momentum
+from intermit.optim.bounds.proof import path_of
 from intermit.optim.bounds.sets.gauge import invariant_set, longest_vertex
 from intermit.optim.bounds.sets.momentum_sets import UnitBall
 from intermit.optim.bounds.windows.coast import coasts
@@ -113,7 +114,7 @@ def flown_backwards(random):
     horizon = float(window.knots[-1])
     direction, jumps = steered(random, kind, horizon, norm)
     J, inverse = body.inertia, np.linalg.inv(body.inertia)
-    longest = 1.0 if norm.is_ball else float(longest_vertex(norm))
+    longest = 1.0 if norm.is_ball else float(longest_vertex(norm)[1])
     reach = float(WindowTravel(window).total)
     size = 10 ** random.uniform(-2, 0.3)
     peak = size * np.trace(J) / 3 / reach / longest  # turns at about this rate, rad/s
@@ -158,7 +159,7 @@ def bound_after(problem, coast, growth=None):
     windows, H0 = WindowTravel(problem.window), start_momentum(problem)
     found = []
     euclidean = problem.norm.is_ball
-    sets = [(UnitBall(problem.body), Fraction(1) if euclidean else longest_vertex(problem.norm))]
+    sets = [(UnitBall(problem.body), Fraction(1) if euclidean else longest_vertex(problem.norm)[1])]
     if not euclidean:
         sets.append((invariant_set(problem.body, problem.norm), Fraction(1)))
     for momenta, scale in sets:
