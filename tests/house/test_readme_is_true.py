@@ -1,4 +1,4 @@
-"""What the README tells a newcomer to type works, and its tables name what is there."""
+"""The README's library example works, and its tables name what is there; its commands run from the wheel."""
 
 from __future__ import annotations
 
@@ -35,16 +35,6 @@ def test_python_block_runs(
     assert "claims are proved." in said
     assert (tmp_path / "run.png").stat().st_size > 10_000
     pyplot.close("all")
-
-
-@pytest.mark.slow
-def test_console_commands_run(checkout: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    (console,) = blocks(text(checkout), "console")
-    commands = [line.split()[1:] for line in console.splitlines() if line.startswith("venv/bin/intermit")]
-    assert len(commands) >= 2
-    for command in commands:
-        assert run(command) == 0, command
 
 
 def test_command_table_names_real_commands(checkout: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -69,33 +70,28 @@ def test_the_wheel_holds_every_file_and_nothing_else(checkout: Path, wheel: Path
 
 
 @pytest.mark.slow
-def test_wheel_checks_the_papers_scenario_from_an_empty_folder(wheel: Path, tmp_path: Path) -> None:
-    target = tmp_path / "site"
+def test_the_readmes_commands_run_from_the_wheel_in_an_empty_folder(
+    checkout: Path, wheel: Path, tmp_path: Path
+) -> None:
+    target, empty = tmp_path / "site", tmp_path / "empty"
     with zipfile.ZipFile(wheel) as archive:
         archive.extractall(target)
-    environment = {**os.environ, "PYTHONPATH": str(target)}
-    command = [sys.executable, "-m", "intermit"]
-    empty = tmp_path / "empty"
     empty.mkdir()
-    made = subprocess.run(
-        [*command, "init", "--paper", "study"],
-        cwd=empty,
-        env=environment,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert made.returncode == 0, made.stderr
-    assert (empty / "study" / "paper.toml").is_file()
-    checked = subprocess.run(
-        [*command, "check", "--no-margins", "study/paper.toml"],
-        cwd=empty,
-        env=environment,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert checked.returncode == 0, checked.stdout + checked.stderr
+    readme = (checkout / "README.md").read_text(encoding="utf-8")
+    (console,) = re.findall(r"^```console\n(.*?)^```", readme, flags=re.DOTALL | re.MULTILINE)
+    commands = [line.split()[1:] for line in console.splitlines() if line.startswith("venv/bin/intermit")]
+    assert [command[0] for command in commands] == ["init", "check"]
+    for command in commands:
+        done = subprocess.run(
+            [sys.executable, "-m", "intermit", *command],
+            cwd=empty,
+            env={**os.environ, "PYTHONPATH": str(target)},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == 0, done.stdout + done.stderr
+    assert (empty / "my-study" / "paper.toml").is_file()
 
 
 def test_every_subpackage_is_named_once(checkout: Path) -> None:

@@ -68,9 +68,10 @@ def check(seed, windows, options, search=None):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(12))
-def test_sixty_problems_over_twelve_bodies(seed):
-    ratios = check(seed, 5, FULL if seed % 6 == 1 else COARSE, SEARCH)
+@pytest.mark.parametrize("seed", range(5))
+def test_thirty_problems_over_five_bodies(seed):
+    """A body's problems share their potentials, so that more of them cost less than more bodies."""
+    ratios = check(seed, 6, FULL if seed == 1 else COARSE, SEARCH)
     assert len(ratios) >= 3
     assert max(ratio for problem, ratio in ratios if problem.starts_at_rest) > 0.6  # and it is near
 
@@ -83,6 +84,6 @@ def test_a_bound_too_high_would_be_noticed():
 
 
 @pytest.mark.soak
-@pytest.mark.parametrize("seed", range(12, 62))
-def test_three_hundred_problems(seed):
+@pytest.mark.parametrize("seed", range(5, 62))
+def test_three_hundred_more_problems(seed):
     check(seed, 6, FULL, SEARCH)
