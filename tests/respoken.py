@@ -6,7 +6,7 @@ from itertools import cycle
 from typing import Any
 
 from intermit.reports import Record
-from intermit.reports.record.values import thaw
+from synthetic_record import thaw
 
 SPOKEN = (
     {

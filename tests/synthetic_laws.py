@@ -39,6 +39,12 @@ def case(name: str, label: str, adaptive: bool, gamma: float, arrays: dict[str, 
     arrays[f"{name}.angle_bound"] = np.minimum(
         2 * np.pi, np.maximum.accumulate(angle[::-1])[::-1] * 1.3 + 0.01
     )
+    arrays[f"{name}.speed_bound"] = (
+        0.01 + 1.3 * np.maximum.accumulate(np.linalg.norm(run["rate"], axis=1)[::-1])[::-1]
+    )
+    arrays[f"{name}.torque_bound"] = (
+        0.01 + 5.0 * np.maximum.accumulate(np.linalg.norm(run["torque"], axis=1)[::-1])[::-1]
+    )
     names = {
         "time": f"{name}.time",
         "quaternion": f"{name}.quaternion",
@@ -124,6 +130,8 @@ def case(name: str, label: str, adaptive: bool, gamma: float, arrays: dict[str, 
             "time": f"{name}.time",
             "filter_floor": f"{name}.floor",
             "angle_bound": f"{name}.angle_bound",
+            "speed_bound": f"{name}.speed_bound",
+            "torque_bound": f"{name}.torque_bound",
         },
         "recheck": "intermit recheck certificates/floor.json",
     }

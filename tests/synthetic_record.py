@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from intermit.reports import Record
@@ -26,6 +27,13 @@ on_time = 3.2
 axis = [1, 1, 1]
 angle_deg = 120
 """
+
+
+def thaw(value: Any) -> Any:
+    """A fresh tree of dicts and lists from a record's read-only document."""
+    if isinstance(value, Mapping):
+        return {k: thaw(v) for k, v in value.items()}
+    return [thaw(v) for v in value] if isinstance(value, tuple) else value
 
 
 def quantities(record: Record) -> list[QuantityEntry]:

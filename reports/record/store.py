@@ -8,20 +8,17 @@ same bytes: keys are sorted, floats are written shortest, nothing is timed and n
 from __future__ import annotations
 
 import hashlib
-import io
 import json
-import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any, final
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ...errors import InputError
 from ..whole_files import write_whole
+from .arrays import Array, RecordError, arrays_bytes, described, frozen_array, read_arrays
 from .base import parts_of
 from .document import FORMAT, VERSION, Document, Outcome, Provenance, Sections, read_document
 from .tables import SeriesEntry
@@ -29,12 +26,6 @@ from .values import freeze, plain
 
 DOCUMENT_NAME = "results.json"
 ARRAYS_NAME = "results.npz"
-
-Array = NDArray[np.float64]
-
-
-class RecordError(InputError):
-    """The record does not have the form its schema demands, or its files do not belong together."""
 
 
 @final
@@ -71,14 +62,14 @@ class Record:
             If the document departs from its form, names an array that is not given, or an array
             is not named anywhere.
         """
-        held = {str(name): _frozen_array(name, value) for name, value in (arrays or {}).items()}
+        held = {str(name): frozen_array(name, value) for name, value in (arrays or {}).items()}
         document: dict[str, Any] = {
             "format": FORMAT,
             "version": VERSION,
             "title": title,
             "provenance": provenance,
             "sections": sections,
-            "arrays": {name: _describe(value) for name, value in held.items()},
+            "arrays": {name: described(value) for name, value in held.items()},
         }
         if outcome is not None:
             document["outcome"] = outcome
@@ -164,7 +155,7 @@ def read_record(path: str | Path) -> Record:
             f"{source}: record version {document.get('version')!r}, this package reads version {VERSION}; "
             "run the study again"
         )
-    arrays = _read_arrays(source.with_suffix(".npz"), bool(document.get("arrays")))
+    arrays = read_arrays(source.with_suffix(".npz"), bool(document.get("arrays")))
     try:
         return Record(_checked(document, arrays), freeze(arrays))
     except RecordError as error:
@@ -188,7 +179,7 @@ def _checked(document: Mapping[str, Any], arrays: Mapping[str, Array]) -> Docume
             f"the document and the array file do not belong together: {odd[0]!r} is in one only"
         )
     for name, value in arrays.items():
-        if plain(content.arrays[name]) != _describe(value):
+        if content.arrays[name] != described(value):
             raise RecordError(f"array {name!r} is not the one the document was written with")
     used: set[str] = set()
     for where, part in parts_of(content.sections, "record.sections"):
@@ -212,44 +203,6 @@ def _check_lengths(part: object, lengths: Mapping[str, int], where: str) -> None
                 raise RecordError(f"{where}.{role}: {length} rows beside {rows} times")
     if isinstance(part, SeriesEntry) and part.style not in {"bars", "step"} and len({*lengths.values()}) > 1:
         raise RecordError(f"{where}: x and y have different lengths")
-
-
-def _frozen_array(name: str, value: ArrayLike) -> Array:
-    array = np.array(value, dtype="<f8", order="C", copy=True)
-    if array.ndim == 0 or not np.all(np.isfinite(array) | np.isposinf(array)):
-        raise RecordError(f"array {name!r}: expected at least one dimension and no NaN or -inf")
-    array.setflags(write=False)
-    return array
-
-
-def _describe(value: Array) -> dict[str, Any]:
-    return {"shape": list(value.shape), "sha256": hashlib.sha256(value.tobytes()).hexdigest()}
-
-
-def arrays_bytes(arrays: Mapping[str, Array]) -> bytes:
-    """Pack the .npz file: sorted names, fixed dates, so that the same arrays give the same bytes."""
-    buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED, compresslevel=6) as archive:
-        for name in sorted(arrays):
-            entry = io.BytesIO()
-            np.lib.format.write_array(entry, np.asarray(arrays[name]), version=(1, 0), allow_pickle=False)
-            info = zipfile.ZipInfo(f"{name}.npy")
-            info.external_attr = 0o644 << 16
-            info.compress_type = zipfile.ZIP_DEFLATED
-            archive.writestr(info, entry.getvalue())
-    return buffer.getvalue()
-
-
-def _read_arrays(path: Path, wanted: bool) -> dict[str, Array]:
-    if not wanted and not path.exists():
-        return {}
-    try:
-        with path.open("rb") as file, np.load(file, allow_pickle=False) as stored:
-            return {name: _frozen_array(name, stored[name]) for name in stored.files}
-    except OSError as error:
-        raise RecordError(f"{path}: the record's arrays cannot be read; keep both files together") from error
-    except (ValueError, KeyError, zipfile.BadZipFile) as error:
-        raise RecordError(f"{path}: not the arrays of a record ({error})") from error
 
 
 def _refuse_constant(name: str) -> float:

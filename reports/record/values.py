@@ -1,4 +1,4 @@
-"""From Python values to plain JSON values and back: normalise, freeze, thaw."""
+"""From Python values to plain JSON values and their read-only view."""
 
 from __future__ import annotations
 
@@ -71,13 +71,4 @@ def freeze(value: Any) -> Any:
         return MappingProxyType({k: freeze(v) for k, v in value.items()})
     if isinstance(value, list):
         return tuple(freeze(v) for v in value)
-    return value
-
-
-def thaw(value: Any) -> Any:
-    """Inverse of `freeze`: a fresh tree of dicts and lists."""
-    if isinstance(value, Mapping):
-        return {k: thaw(v) for k, v in value.items()}
-    if isinstance(value, tuple):
-        return [thaw(v) for v in value]
     return value

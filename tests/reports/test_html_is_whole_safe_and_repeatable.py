@@ -15,9 +15,8 @@ from intermit.reports.content.heading import heading
 from intermit.reports.content.wording import short, visible
 from intermit.reports.html import html_page
 from intermit.reports.numbers import write
-from intermit.reports.record.values import thaw
 from respoken import respoken
-from synthetic_record import make, quantities
+from synthetic_record import make, quantities, thaw
 
 
 class Reader(html.parser.HTMLParser):

@@ -11,9 +11,8 @@ from intermit.reports import Record, RecordError, read_record, write_record
 from intermit.reports.build import comparison_files, rebuild_report, write_comparison, write_report
 from intermit.reports.content.comparing import comparison_chapters, comparison_sentence
 from intermit.reports.join import join
-from intermit.reports.record.values import thaw
 from respoken import respoken
-from synthetic_record import make
+from synthetic_record import make, thaw
 
 
 def part(record: Record, *keep: str) -> Record:

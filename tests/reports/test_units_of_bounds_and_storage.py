@@ -5,6 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from intermit.reports.content import runs
+from intermit.reports.content.blocks import charts_of
+from intermit.reports.content.chapters import chapters
 from intermit.reports.record.base import unit_of
 from intermit.reports.record.runs import BoundArrays, RunArrays
 
@@ -31,3 +33,18 @@ def test_each_unit_stands_in_its_field():
     assert unit_of(BoundArrays, "torque_bound") == unit_of(RunArrays, "torque") == "N m"
     with pytest.raises(KeyError):
         unit_of(RunArrays, "invented")
+
+
+@pytest.mark.parametrize(
+    ("key", "chapter", "unit"),
+    [
+        ("bound-torque", "torque", "N m"),
+        ("bound-speed", "attitude", "rad/s"),
+        ("bound-angle", "attitude", "rad"),
+    ],
+)
+def test_certified_bounds_over_time_have_a_figure_with_their_unit(record, key, chapter, unit):
+    (found,) = (c for c in chapters(record) if c.key == chapter)
+    (chart,) = (c for c in charts_of([found]) if c.key == key)
+    assert chart.y.unit == unit
+    assert len(chart.lines) == len(record.sections.cases)
