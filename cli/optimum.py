@@ -69,10 +69,14 @@ def run(
     if certificate is not None:
         from ..reports.whole_files import write_whole
         from ..study.optimum.lower_bounds import bound_claim
+        from ..study.optimum.nominal import nominal_words
         from ..verify.certificates import certificate_text
         from ..verify.lyapunov import certificates_of
 
-        claims = [bound_claim(o.stated or o.problem, o.bound) for o in study.optima if o.bound is not None]
+        body = nominal_words(loaded)
+        claims = [
+            bound_claim(o.stated or o.problem, o.bound, body) for o in study.optima if o.bound is not None
+        ]
         held = certificates_of(claims)
         for claim in claims:
             note(f"{claim.verdict.value} {claim.title}")

@@ -39,9 +39,12 @@ def run(
     if scenario is None or not valid:
         return ExitCode.HOLDS if valid else ExitCode.REFUTED
     from ..scenario import load_scenario
-    from ..study.certify.same_scenario import differences
+    from ..study.certify.same_scenario import differences, uncovered
 
-    found = differences(text, load_scenario(scenario))
+    loaded = load_scenario(scenario)
+    found = differences(text, loaded)
+    for line in uncovered(text, loaded):
+        typer.echo(f"NOMINAL  {line}")
     for line in found:
         typer.echo(f"DIFFERS  {line} is not that of {scenario}")
     if not found:

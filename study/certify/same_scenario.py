@@ -32,8 +32,10 @@ from ...verify.schedule.filter_start import greatest_gain_at
 from ...verify.schedule.zero_runs import default_length
 from ..check.filter_question import floor_question
 from ..optimum.lower_bounds import transfers_data
+from ..optimum.nominal import nominal_words
 from ..simulated_run import RunFigures
 
+BOUND = "peak-lower-bound"
 CONDITIONS = ("sharp-condition", "paper-condition")
 FILTER_STARTS = ("filter-start", "filter-start-counterexample")
 
@@ -53,6 +55,18 @@ def differences(text: str, scenario: Scenario) -> tuple[str, ...]:
         if gaps[0]:
             found.append(f"part {number}: {', '.join(gaps[0])}")
     return tuple(found)
+
+
+def uncovered(text: str, scenario: Scenario) -> tuple[str, ...]:
+    """Parts that speak of the nominal body alone where the scenario knows it within a tolerance."""
+    words = nominal_words(scenario)
+    parts = json.loads(text)["parts"]
+    bounds = [n for n, part in enumerate(parts, start=1) if BOUND in _kinds(part)]
+    return tuple(f"part {number}: the bound of the peak is {words}" for number in bounds if words)
+
+
+def _kinds(part: Mapping[str, Any]) -> set[str]:
+    return {certificate["kind"] for certificate in part["certificates"]}
 
 
 def _laws(scenario: Scenario) -> Sequence[Law | None]:
@@ -113,10 +127,9 @@ class _Known:
 
 def _unequal(part: Mapping[str, Any], known: _Known) -> Iterator[str]:
     """Names of what the scenario does not confirm."""
-    stated, kinds = part["data"], {certificate["kind"] for certificate in part["certificates"]}
-    bound_alone = stated.keys() == {"inertia", "transfer"}  # a bound speaks of the inertia as stated
+    stated, kinds = part["data"], _kinds(part)
     missing = "inertia_tolerance" in known.data and "inertia_tolerance" not in stated
-    if missing and "inertia" in stated and not bound_alone:
+    if missing and "inertia" in stated and kinds != {BOUND}:  # of a bound `uncovered` says it
         yield "inertia_tolerance (the scenario has one, the certificate none)"
     old = "law" in stated and "program" not in stated["law"]
     parameters = known.data.get("parameters", {})

@@ -26,6 +26,7 @@ from ...verify.sampling import SampledDerivative, with_samples
 from ...verify.schedule.filter_start import filter_start_claim
 from ...verify.verdict import Claim, Quantity, Verdict
 from ..claims.keys import CLAIM_KEYS, order_of
+from ..claims.known_inertia import say_inertia
 from ..simulated_run import Run, RunFigures
 from .filter_question import floor_question, is_certified, robust_question
 from .margins import convergence_margins, with_margins
@@ -147,7 +148,7 @@ def decide(
             limit, question, quaternion=start.attitude, rate=start.exact_rate, at=seen.excess_at
         )
     return Decided(
-        tuple(claims.values()),
+        say_inertia(claims.values(), scenario, law),
         reference_floor(scenario, law, claims.get("filter.floor"), seen),
         bounds_over_time(found.floor, scenario.horizon) if found.floor is not None else None,
         floor_note(scenario.schedule, found.converged),
@@ -187,7 +188,7 @@ def decided_claims(scenario: Scenario, law: Law) -> tuple[Claim, ...]:
     """Claims about one law that exact means decide, with their certificates; no samples, no simulation."""
     found = answer(floor_question(scenario, law, RunFigures(), search=False))
     robust = () if scenario.uncertainty.is_nominal else robust_claims(robust_question(scenario, law))
-    return (*_algebraic_claims(scenario, law), *found.claims, *robust)
+    return say_inertia((*_algebraic_claims(scenario, law), *found.claims, *robust), scenario, law)
 
 
 def _members(scenario: Scenario, law: Law) -> MembersFound:

@@ -12,6 +12,7 @@ from ...scenario import Scenario
 from ...verify.exact.rounding import digits_below
 from ...verify.verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict
 from ..plots import draw
+from .nominal import nominal_words
 from .run import norm_of, norms_asked, transfer
 
 if TYPE_CHECKING:
@@ -83,11 +84,14 @@ def own_bound(scenario: Scenario) -> CertifiedBound:
 
     problem = transfer(scenario, norms_asked(scenario)[0])
     bounds = certified_lower_bound(problem)
-    return CertifiedBound(scenario, problem, bounds, bound_claim(problem, bounds))
+    return CertifiedBound(scenario, problem, bounds, bound_claim(problem, bounds, nominal_words(scenario)))
 
 
-def bound_claim(problem: TransferProblem, bound: LowerBound) -> Claim:
-    """Claim the largest bound that the stand-alone checker confirms, and name a larger one without a file."""
+def bound_claim(problem: TransferProblem, bound: LowerBound, nominal: str = "") -> Claim:
+    """Claim the largest bound that the stand-alone checker confirms, and name a larger one without a file.
+
+    `nominal`: which body it speaks of, in words (see `nominal_words`).
+    """
     from ...optim.bounds.certificate import has_certificate, largest_certificate
 
     norm, unit = problem.norm.name, problem.norm.unit
@@ -113,11 +117,12 @@ def bound_claim(problem: TransferProblem, bound: LowerBound) -> Claim:
     if named.name != bound.name:
         title += f"; the larger bound by {bound.name} has no certificate"
         larger = f" The larger bound {below(bound.value)} {unit} ({bound.name}) has no certificate."
+    spoken = f", {nominal}" if nominal else ""
     summary = "travel, multipliers and potentials, proved anew by the stand-alone checker"
     return Claim(
         "optimum.bound",
         title,
-        f"No torque of peak below {least} ({norm}) makes the transfer.{larger}",
+        f"No torque of peak below {least} ({norm}) makes the transfer{spoken}.{larger}",
         Verdict.PROVED,
         (Evidence(EvidenceKind.CERTIFICATE, summary, SOURCE, {"certificate": certificate}),),
         (Quantity("least_peak", named.value, float("inf"), unit, rigorous=True, side="lower"),),

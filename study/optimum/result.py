@@ -16,6 +16,7 @@ from ...reports.summary import Shown, Summary
 from ...scenario import Scenario
 from ..options import NormKey, OptimumOptions
 from ..plots import TIME, components, draw, level
+from .nominal import nominal_words
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -127,7 +128,9 @@ class OptimumStudy(Shown):
         """The outcome in one sentence."""
         counts = Counter(optimum.outcome for optimum in self.optima)
         parts = [f"{n} {words}" for words, n in counts.items()]
-        return f"Of {len(self.optima)} least peaks: {'; '.join(parts)}."
+        body = nominal_words(self.scenario)
+        spoken = f" Optima and bounds are {body}." if body else ""
+        return f"Of {len(self.optima)} least peaks: {'; '.join(parts)}.{spoken}"
 
     def optimum(self, norm: NormKey) -> Optimum:
         """The optimum in one norm.

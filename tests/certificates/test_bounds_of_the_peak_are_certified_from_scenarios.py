@@ -96,8 +96,16 @@ def test_without_an_optimum_or_by_wish_there_is_none(tmp_path, capsys):
 def test_a_bound_speaks_of_the_inertia_as_stated(tmp_path, capsys):
     toml, file = scenario(tmp_path, tolerance="inertia_tolerance = 0.01"), tmp_path / "t.json"
     assert run(["certify", str(toml), "--bound", "-o", str(file)]) == 0
+    capsys.readouterr()
     assert run(["recheck", str(file), "--scenario", str(toml)]) == 0
-    assert "EQUAL" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "EQUAL" in said
+    assert (
+        "the bound of the peak is of the nominal body alone: spacecraft.inertia_tolerance is not covered"
+        in said
+    )
+    assert run(["recheck", str(file), "--scenario", str(scenario(tmp_path, "exact"))]) == 1
+    assert "NOMINAL" not in capsys.readouterr().out
 
 
 def test_optimum_writes_each_norm_and_how_to_recheck_it(tmp_path, capsys):

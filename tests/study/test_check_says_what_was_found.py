@@ -6,11 +6,16 @@ import json
 import subprocess
 import sys
 from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
 from intermit.reports.record import read_record
+from intermit.scenario import load_scenario
+from intermit.study.check.case import decided_claims
 from intermit.study.claims.keys import CLAIM_KEYS
+from intermit.study.claims.known_inertia import WIDENED
 
 ONE_LAW = '[[law]]\ntype = "persistence-filter"\n'
 Run = Callable[..., tuple[int, str, str]]
@@ -110,6 +115,19 @@ def test_g_as_printed_acts_in_the_fall_uncounted(
     printed, corrected = verdicts["paper.toml"], verdicts["paper-e9.toml"]
     assert (printed["verdict"], printed["counted"]) == ("REFUTED", False)
     assert (corrected["verdict"], corrected["counted"]) == ("PROVED", True)
+
+
+def test_a_claim_over_a_tolerance_says_that_the_law_knows_the_inertia(write_scenario: Write) -> None:
+    scenario = load_scenario(write_scenario())
+    law = scenario.laws[0].build()
+    rows = tuple(tuple(Fraction(1, 100) for _ in range(3)) for _ in range(3))
+    for tolerance, said in ((None, False), (rows, True)):
+        claims = decided_claims(replace(scenario, inertia_tolerance=tolerance), law)
+        widened = [c for c in claims if c.key in WIDENED]
+        assert len(widened) >= 5
+        assert all(("which the law knows and computes with" in c.statement) is said for c in widened)
+        rate = next(c for c in claims if c.key == "lambda.rate")
+        assert "with W = R (2 a (1 - b0) + Omega'J Omega)" in rate.statement
 
 
 def test_listed_claims_decide_the_exit_code(intermit: Run, write_scenario: Write) -> None:

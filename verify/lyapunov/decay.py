@@ -44,7 +44,7 @@ def derivative_claim(
             reason = str(error)
         else:
             within = "" if bound is None else f", 0 <= g <= {float(bound):.6g}"
-            rho = f"V' <= -rho W with rho = {float(proof.rate):.9g} 1/s" if proof.rate else "V' <= 0"
+            rho = _decays(candidate, proof.rate) if proof.rate else "V' <= 0"
             return _proved(key, f"{rho}{_where(candidate)}{within}", proof)
     refutation = _refute(candidate, body, tolerance, weight)
     if refutation is not None:
@@ -92,7 +92,7 @@ def rate_claim(
         return _claim(
             "lambda.rate", statement, Verdict.UNDECIDED, reason=reason, next_step=_next_step(candidate)
         )
-    sized = f"V{named}: V' <= -rho W with rho = {float(proof.rate):.9g} 1/s{_where(candidate)}"
+    sized = f"V{named}: {_decays(candidate, proof.rate)}{_where(candidate)}"
     extra = () if weight is None else (rational_quantity("weight", weight, unit="kg m^2/s^2"),)
     return _proved("lambda.rate", sized, proof, extra)
 
@@ -180,6 +180,12 @@ def _next_step(candidate: Candidate) -> str:
     return (
         f"change the storage function that {type(candidate.loop.law).__name__}.storage returns, or the gains"
     )
+
+
+def _decays(candidate: Candidate, rate: Fraction) -> str:
+    """The rate in words, and what it is a share of."""
+    W = "V" if candidate.right_side is None else "R (2 a (1 - b0) + Omega'J Omega)"
+    return f"V' <= -rho W with W = {W}, rho = {float(rate):.9g} 1/s"
 
 
 def _where(candidate: Candidate) -> str:
