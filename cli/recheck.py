@@ -20,20 +20,28 @@ def run(
             "--scenario", metavar="SCENARIO.toml", help="Demand that the file speaks of this scenario."
         ),
     ] = None,
+    part: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--with", metavar="PART.py", help="Trust a comparison system of somebody else's (runs its code)."
+        ),
+    ] = None,
     debug: Debug = False,
 ) -> int:
     """Prove every claim of a certificate file anew, from the file alone.
 
+    A part that is named is trusted beside the checker; every claim that rests on one says so.
     Exit code 0 if everything is valid (and equal to the scenario's data, if one is given), else 1.
     """
     del debug
+    from ..study.certify.recheck import read_parts
     from ..verify import checker
 
     try:
         text = file.read_text(encoding="utf-8")
     except UnicodeDecodeError as error:
         raise InputError(f"{file}: is not UTF-8 text (byte {error.start + 1})") from None
-    findings = checker.check_text(text)
+    findings = checker.check_text(text, read_parts(part or ()))
     typer.echo(checker.report(findings), nl=False)
     valid = all(finding.valid for finding in findings)
     if scenario is None or not valid:

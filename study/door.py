@@ -324,13 +324,15 @@ def certify(source: Source, *, bound: bool = False) -> Certification:
     return run(_scenario(source), silent, bound=bound)
 
 
-def recheck(source: str | Path | Certification) -> Rechecked:
+def recheck(source: str | Path | Certification, *, parts: Sequence[str | Path] = ()) -> Rechecked:
     """Prove every claim of a certificate file anew, by the stand-alone checker.
 
     Parameters
     ----------
     source : str, Path or Certification
         A Path is a file. A str is a file's text if it begins with "{", else a file.
+    parts : sequence of str or Path
+        Files of comparison systems of somebody else's, trusted beside the checker; their code is run.
 
     Returns
     -------
@@ -349,12 +351,13 @@ def recheck(source: str | Path | Certification) -> Rechecked:
     from .certify.recheck import recheck_text
     from .certify.run import Certification
 
+    files = [Path(part) for part in parts]
     if isinstance(source, Certification):
-        return recheck_text(source.text)
+        return recheck_text(source.text, files)
     if isinstance(source, str) and source.lstrip().startswith("{"):
-        return recheck_text(source)
+        return recheck_text(source, files)
     try:
-        return recheck_text(Path(source).read_text(encoding="utf-8"))
+        return recheck_text(Path(source).read_text(encoding="utf-8"), files)
     except UnicodeDecodeError as error:
         raise InputError(f"{source}: is not UTF-8 text (byte {error.start + 1})") from None
     except (OSError, ValueError) as error:

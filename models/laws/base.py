@@ -167,6 +167,14 @@ class Law(ABC):
         del plant, states, parameters
         return {}
 
+    def proofs(self) -> tuple[object, ...]:
+        """Return ways in which the law can be proved, of its own; none by default.
+
+        Each is an `intermit.verify.filter.proofs.ComparisonProof`. What it says is checked against the law's
+        equations, and its certificates by the stand-alone checker (docs/own-proof.md).
+        """
+        return ()
+
     def storage(
         self,
         plant: PlantSymbols,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
@@ -69,6 +70,6 @@ def certified_floor(law: Law, task: Task) -> float | None:
     )
     finite_end = None if task.schedule.period is not None else task.schedule.end
     floor = certify_floor(law, bounds, task.schedule, start, horizon=finite_end)
-    if floor is None or floor.failed_at is not None or floor.value <= 0:
+    if floor is None or floor.failed_at is not None or not 0 < floor.value < math.inf:
         return None
     return floor.value

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import final
 
+from ...errors import InputError
 from ...reports.summary import Shown, Summary
-from ...verify.checker import Finding, check_text
+from ...verify.checker import Finding, Part, check_text, read_part
 
 
 @final
@@ -43,9 +45,26 @@ class Rechecked(Shown):
         return Summary("Certificate file", (line, *why), ((("", "kind", "claim"), rows),))
 
 
-def recheck_text(text: str) -> Rechecked:
-    """Prove every claim of a certificate file's text anew."""
-    return Rechecked(tuple(check_text(text)))
+def recheck_text(text: str, parts: Sequence[Path] = ()) -> Rechecked:
+    """Prove every claim of a certificate file's text anew, trusting the checker and the parts named."""
+    return Rechecked(tuple(check_text(text, read_parts(parts))))
+
+
+def read_parts(files: Sequence[Path]) -> tuple[Part, ...]:
+    """Read the checker's parts from outside; their code is run.
+
+    Raises
+    ------
+    InputError
+        If one cannot be read or run, or brings nothing.
+    """
+    parts = []
+    for path in files:
+        try:
+            parts.append(read_part(path.read_text(encoding="utf-8"), path.name))
+        except Exception as error:  # whatever the part's own code does
+            raise InputError(f"{path}: is no part of the checker: {type(error).__name__}: {error}") from None
+    return tuple(parts)
 
 
 def _word(finding: Finding) -> str:

@@ -17,7 +17,9 @@ from ...verify.certificates.facts import windows_data
 from ...verify.certificates.program import NotAlgebraicError
 from ...verify.certificates.schedule import schedule_data
 from ...verify.checker import Invalid, exact, same_law
-from ...verify.filter.certificate import set_data
+from ...verify.filter.adaptive import AdaptiveProof
+from ...verify.filter.certificate import FLOOR, WITHOUT_FILTER, set_data
+from ...verify.filter.persistence import PersistenceProof
 from ...verify.filter.recognise import (
     ComparedLaw,
     NoComparisonError,
@@ -152,7 +154,7 @@ def _unequal(part: Mapping[str, Any], known: _Known) -> Iterator[str]:
                     yield f"parameters.{name}"
         elif not _same(value, known.data.get(key)):
             yield key
-    if "filter-floor" in kinds and "initial" not in stated:  # earlier versions: among the parameters
+    if FLOOR in kinds and "initial" not in stated:  # earlier versions: among the parameters
         start = known.data.get("initial", {})
         if any(not _same(stated["parameters"].get(f"{name}0"), value) for name, value in start.items()):
             yield "initial"
@@ -171,7 +173,7 @@ def _unequal(part: Mapping[str, Any], known: _Known) -> Iterator[str]:
 def _by_name(law: Mapping[str, Any], known: _Known) -> Mapping[str, str]:
     """Parameters that the equations meant by a name must have (files of earlier versions hold no program)."""
     found = known.compared
-    if found is None or law.get("name") != ("adaptive-scaling" if found.adaptive else "persistence-filter"):
+    if found is None or law.get("name") != (AdaptiveProof if found.adaptive else PersistenceProof).name:
         return {}
     values = {"lambda": found.decay, "R0": found.initial_filter}
     if found.adaptive:
@@ -183,7 +185,7 @@ def _unequal_claim(certificate: Mapping[str, Any], known: _Known) -> Iterator[st
     """Names of what a claim assumes beside the data, and the scenario does not say."""
     kind, claim, scenario = certificate["kind"], certificate["claim"], known.scenario
     schedule = scenario.schedule
-    if kind in ("filter-floor", "robust-floor"):
+    if kind in (FLOOR, WITHOUT_FILTER, "robust-floor"):
         tolerance = as_text({"attitude": scenario.tolerance.attitude, "rate": scenario.tolerance.rate})
         settling = claim.get("settling", {})
         for name, value in tolerance.items():

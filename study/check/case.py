@@ -130,7 +130,7 @@ def decide(
     found = answer(question)
     claims |= {claim.key: claim for claim in found.claims}
     if "R" not in (state.name for state in law.controller_states):
-        del claims["filter.floor"]
+        claims.pop("filter.floor", None)
     _add_torque(claims, found)
     if not scenario.uncertainty.is_nominal:
         tell("every body of the uncertainty", 0.45)
@@ -152,8 +152,13 @@ def decide(
         reference_floor(scenario, law, claims.get("filter.floor"), seen),
         bounds_over_time(found.floor, scenario.horizon) if found.floor is not None else None,
         floor_note(scenario.schedule, found.converged),
-        options.margins and claims["convergence"].verdict is Verdict.PROVED,
+        options.margins and claims["convergence"].verdict is Verdict.PROVED and not _is_from_outside(found),
     )
+
+
+def _is_from_outside(found: FloorAnswer) -> bool:
+    """Whether a proof rests on a system from outside: its every certificate must be checked, margins' too."""
+    return found.floor is not None and found.floor.system.part is not None
 
 
 def margins(scenario: Scenario, choice: LawChoice) -> tuple[Quantity, ...]:
@@ -215,9 +220,8 @@ def _algebraic_claims(scenario: Scenario, law: Law) -> Iterator[Claim]:
 
 def _add_torque(claims: dict[str, Claim], found: FloorAnswer) -> None:
     """Without a limit to hold it against, the certified torque bound stands with the convergence."""
-    floor = claims.get("filter.floor")
-    covered = floor is not None and floor.verdict is Verdict.PROVED
-    if covered and found.torque is not None and "torque.limit" not in claims:
+    proved = claims.get("filter.floor", claims["convergence"])
+    if proved.verdict is Verdict.PROVED and found.torque is not None and "torque.limit" not in claims:
         convergence = claims["convergence"]
         quantities = (*convergence.quantities, *torque_quantities(found.torque))
         claims["convergence"] = replace(convergence, quantities=quantities)

@@ -20,7 +20,8 @@ from ...reports.record import Record
 from ...reports.record.document import Sections
 from ...reports.record.tables import CellEntry, CodeCell, CollectionEntry, SeriesEntry
 from ...scenario import LawChoice, Scenario, ScenarioError
-from ...verify.filter.recognise import has_comparison
+from ...verify.filter.comparison import BodyBounds
+from ...verify.filter.known_proofs import has_comparison
 from ..collections import Arrays, certified_below, collection_record, newtons, task_of
 
 
@@ -116,7 +117,7 @@ def conditions_on(scenario: Scenario, choice: LawChoice) -> CertifiedConvergence
 
     A law without a comparison system is tuned without certified conditions, and the record says so.
     """
-    if not has_comparison(choice.build()):
+    if not has_comparison(choice.build(), BodyBounds.of(scenario.body)):
         return None
     bounds = scenario.initial_set
     return CertifiedConvergence(
@@ -221,7 +222,7 @@ def _uncertified(scenario: Scenario, labels: Sequence[str]) -> list[str]:
     return [
         f"{label}: no certified condition exists for this law; it is simulated, nothing is proved of it."
         for label in labels
-        if not has_comparison(scenario.law(label).build())
+        if not has_comparison(scenario.law(label).build(), BodyBounds.of(scenario.body))
     ]
 
 

@@ -19,7 +19,9 @@ JUDGE = {
         "read_scaled",
         "gain_numbers",
         "known_laws",
-    ),  # its words
+        "Part",
+        "read_part",
+    ),  # its words, and parts of it from outside
 }
 """What the package may call of its checker."""
 

@@ -22,11 +22,13 @@ class Part:
 
     Attributes
     ----------
+    module : a part's own module; None for the checker's own
     kinds : name of a kind -> its check
     systems : name of a comparison system -> its class
     """
 
     title: str
+    module: ModuleType | None = None
     kinds: dict[str, Any] = field(default_factory=dict)
     systems: dict[str, Any] = field(default_factory=dict)
 
@@ -71,9 +73,9 @@ def read_part(source: str, name: str) -> Part:
         If it brings nothing, or an entry takes a name of the checker's own.
     """
     digest = sha256(source.encode()).hexdigest()
-    part = Part(f"{name}, sha256 {digest[:16]}")
     module = ModuleType(f"checker_part_{digest[:16]}")
     module.__file__ = name
+    part = Part(f"{name}, sha256 {digest[:16]}", module)
     token, before = _FILLED.set(part), sys.modules.get("checker")
     sys.modules["checker"] = sys.modules[__name__.rpartition(".")[0]]
     sys.modules[module.__name__] = module

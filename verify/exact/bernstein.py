@@ -13,13 +13,17 @@ from fractions import Fraction
 from functools import cache
 from itertools import pairwise
 from math import comb, lcm
-from typing import final
+from typing import Any, final
 
 from flint import fmpq, fmpq_poly
 
 from ...models.schedule import polynomial as poly
 from .bisection import best_first
 from .rational import fraction, rational
+
+Number = fmpq | Fraction | int | float
+_NUMBERS = (fmpq, Fraction, int, float)
+"""Numbers that polynomials are combined with: exact, a float at its binary value."""
 
 
 def _over_one(values: Sequence[Fraction | float]) -> tuple[list[int], int]:
@@ -81,9 +85,9 @@ class Bernstein:
         return value, cls(fmpq_poly(slopes, denominator * length.numerator), n - 1)
 
     @classmethod
-    def constant(cls, value: Fraction | float) -> Bernstein:
+    def constant(cls, value: Number) -> Bernstein:
         """Build a constant."""
-        return cls(fmpq_poly([rational(value)]), 0)
+        return cls(fmpq_poly([_exact(value)]), 0)
 
     @classmethod
     def from_powers(cls, coefficients: poly.Coefficients) -> Bernstein:
@@ -96,23 +100,45 @@ class Bernstein:
             return self
         return Bernstein(self.form * _one_plus_x(degree - self.degree), degree)
 
-    def __add__(self, other: Bernstein) -> Bernstein:
+    def __add__(self, other: Bernstein | Number) -> Bernstein:
+        if not isinstance(other, Bernstein):
+            if not isinstance(other, _NUMBERS):
+                return NotImplemented
+            other = Bernstein.constant(other)
         n = max(self.degree, other.degree)
         return Bernstein(self.elevated(n).form + other.elevated(n).form, n)
 
-    def __sub__(self, other: Bernstein) -> Bernstein:
+    __radd__ = __add__
+
+    def __sub__(self, other: Bernstein | Number) -> Bernstein:
+        if not isinstance(other, Bernstein):
+            if not isinstance(other, _NUMBERS):
+                return NotImplemented
+            other = Bernstein.constant(other)
         n = max(self.degree, other.degree)
         return Bernstein(self.elevated(n).form - other.elevated(n).form, n)
+
+    def __rsub__(self, other: Number) -> Bernstein:
+        return -self + other
 
     def __neg__(self) -> Bernstein:
         return Bernstein(-self.form, self.degree)
 
-    def __mul__(self, other: Bernstein | fmpq | int) -> Bernstein:
+    def __mul__(self, other: Bernstein | Number) -> Bernstein:
         if isinstance(other, Bernstein):
             return Bernstein(self.form * other.form, self.degree + other.degree)
-        return Bernstein(self.form * other, self.degree)
+        if not isinstance(other, _NUMBERS):
+            return NotImplemented
+        return Bernstein(self.form * _exact(other), self.degree)
 
     __rmul__ = __mul__
+
+    def __truediv__(self, other: Bernstein | Number) -> Any:
+        if isinstance(other, Bernstein):
+            return self * (1 / other.form[0]) if other.degree == 0 else Quotient(self, other)
+        if not isinstance(other, _NUMBERS):
+            return NotImplemented
+        return self * (1 / _exact(other))
 
     def controls(self) -> list[Fraction]:
         """Plain Bernstein coefficients; p lies between the least and the greatest on [0, 1]."""
@@ -130,6 +156,41 @@ class Bernstein:
         if min(self.form.numer().coeffs(), default=0) >= 0:
             return True
         return _is_nonnegative(self._integers(), depth)
+
+
+def _exact(value: Number) -> fmpq | int:
+    return rational(value) if isinstance(value, (Fraction, float)) else value
+
+
+@final
+class Quotient:
+    """numerator / denominator of two polynomials; the denominator must be > 0."""
+
+    __slots__ = ("denominator", "numerator")
+
+    def __init__(self, numerator: Bernstein, denominator: Bernstein) -> None:
+        self.numerator, self.denominator = numerator, denominator
+
+    def __add__(self, other: Any) -> Quotient:
+        if isinstance(other, Quotient):
+            raise TypeError("one quotient a slope: bring them to one denominator")
+        return Quotient(self.numerator + other * self.denominator, self.denominator)
+
+    __radd__ = __add__
+
+    def __neg__(self) -> Quotient:
+        return Quotient(-self.numerator, self.denominator)
+
+    def __sub__(self, other: Any) -> Quotient:
+        return self.__add__(-other)
+
+    def __rsub__(self, other: Any) -> Quotient:
+        return (-self).__add__(other)
+
+    def __mul__(self, other: Any) -> Quotient:
+        return Quotient(self.numerator * other, self.denominator)
+
+    __rmul__ = __mul__
 
 
 @cache

@@ -13,31 +13,32 @@ The lower bound of s ends ("zero") where it would reach 0.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from math import exp
-from typing import final
+from typing import Any, final
 
 import numpy as np
 
+from ...models.closed_loop import ClosedLoop
+from ...models.laws import Expression, Law
 from ...models.types import Array
-from ..exact.bernstein import Bernstein
-from ..exact.rational import rational
 from ..exact.rounding import rounded_down, rounded_up
+from ..flow.inequalities import Slope
 from ..flow.stepping import Modes
 from .adaptive_tail import AdaptiveTailSystem
+from .boxes import BoxColumns, Interval
 from .comparison import (
     ATTITUDE_BOUND_LOST,
-    ONE,
     ROUND_UP,
-    TWO,
+    BodyBounds,
     angle_factor,
-    angle_factor_float,
     at_least_tiny,
     drives_attitude,
     filter_scale,
 )
-from .flowpipe import LawComparison
+from .law_system import LawSystem
+from .proofs import CASCADE, ComparisonProof, attitude_measures
+from .recognise import NoComparisonError, compared_law, law_words
 from .sets import InitialSet
 
 MIN_ANGLE_BOUND_SHARE = 0.02
@@ -58,7 +59,7 @@ ABOVE_ROUNDING = 1e-11
 
 
 @final
-class AdaptiveSystem(LawComparison):
+class AdaptiveSystem(LawSystem):
     """Components y, s, k, r and their upper twins Y, Z, L, U (Z bounds s, L bounds k, U bounds R).
 
     Parameters
@@ -74,6 +75,9 @@ class AdaptiveSystem(LawComparison):
     names = ("y", "s", "k", "r", "Y", "Z", "L", "U")
     signs = (-1, -1, -1, -1, 1, 1, 1, 1)
     decaying: tuple[tuple[str, ...], ...] = ()
+    floor_component = "r"
+    is_binned = True
+    why_it_converges = CASCADE
 
     def __init__(
         self,
@@ -85,12 +89,9 @@ class AdaptiveSystem(LawComparison):
         weight: Fraction,
         coupling: float,
     ) -> None:
+        super().__init__(lam=decay, gamma=learning_rate, a=weight, c=coupling)
         self.decay, self.initial_filter, self.learning_rate = decay, initial_filter, learning_rate
         self.initial_gain, self.weight, self.coupling = initial_gain, weight, coupling
-        self._lam, self._gamma, self._a = float(decay), float(learning_rate), float(weight)
-        self._lam_exact, self._c = rational(decay), rational(coupling)
-        self._gamma_exact, self._a_exact = rational(learning_rate), rational(weight)
-        self._half = Bernstein.constant(Fraction(1, 2))
 
     def start(self, initial: InitialSet) -> tuple[float, ...]:
         """Values at t = 0, on the safe side of the initial set."""
@@ -100,10 +101,6 @@ class AdaptiveSystem(LawComparison):
             initial.y_high, initial.s_high, rounded_up(k0), rounded_up(R0),
         )  # fmt: skip
 
-    def contraction(self, period: float) -> float:
-        """exp(-lambda T): what R forgets over a period."""
-        return exp(-self._lam * period)
-
     def tail(self, state: Sequence[float]) -> tuple[AdaptiveTailSystem, tuple[float, ...]]:
         """Return the upper half of the system with k held at its lower bound."""
         _, _, k, r, Y, Z, L, U = state
@@ -111,6 +108,22 @@ class AdaptiveSystem(LawComparison):
             decay=self.decay, learning_rate=self.learning_rate, weight=self.weight, coupling=self.coupling
         )
         return system, (k, r, Y, Z, L, U)
+
+    def why_stuck(self, initial: InitialSet) -> tuple[str, str] | None:
+        """k(0) = 0 learns nothing near the target."""
+        if self.initial_gain != 0 or initial.s_low > 0 or initial.y_low > 0:
+            return None
+        reason = (
+            "k(0) = 0: the nearer a start is to the target, the less its gain learns; no decay is certified "
+            "for all of them at once"
+        )
+        return reason, "take k0 > 0"
+
+    def measures(self, loop: ClosedLoop) -> dict[str, Expression]:
+        """What each component bounds, as functions of the state."""
+        y, s = attitude_measures(loop)
+        k, R = loop.controller_states["k"], loop.controller_states["R"]
+        return {"y": y, "Y": y, "s": s, "Z": s, "k": k, "L": k, "r": R, "U": R}
 
     def bounds(self, low: dict[str, Array], high: dict[str, Array]) -> dict[str, Array]:
         """Read the bounds off the components."""
@@ -123,17 +136,27 @@ class AdaptiveSystem(LawComparison):
             "gain_high": high["L"],
         }
 
+    def torque_terms(self, c: BoxColumns) -> tuple[list[Interval], Array]:
+        """With 0 <= kappa' = gamma R g^2 f."""
+        gamma, a = rounded_up(self.learning_rate), rounded_up(self.weight)
+        square = 2 * c.g**3 * c.high**2
+        intake = np.minimum(2 * (c.y**2 + 2 * a * c.S), 2 * a * (1 + c.y**2 / (4 * a)) ** 2)
+        return [
+            (-2 * c.g**3 * gamma * c.R * intake, np.zeros_like(c.g)),
+            (np.minimum(square * c.b0_low, 0.0), square),
+        ], c.g * c.high
+
     def loosened(self, state: Sequence[float], modes: Modes) -> tuple[float, ...]:
         """Give up lower bounds of y and s where they no longer help; keep upper ones off underflow."""
         y, s, k, r, Y, Z, L, U = state
         low = (0.0 if y < MIN_RATE_BOUND_SHARE * Y else y, 0.0 if modes[0] == "zero" else s)
         Z = at_least_tiny(Z)
-        return (*low, k, r, drives_attitude(Y, Z, self._lam / self.coupling), Z, L, U)
+        return (*low, k, r, drives_attitude(Y, Z, self.floats.lam / self.coupling), Z, L, U)
 
     def choices(self, state: Sequence[float], peak: float) -> Sequence[Modes]:
         """Whether the lower bound of s is kept; how to bound f from above, best now first; k held last."""
         _, s, k, _, Y, Z, _, _ = state
-        a = self._a
+        a = self.floats.a
         if Z * Z >= ATTITUDE_BOUND_LOST:
             return ()
         tops = ["top", "split"] if self._f_top(Y) < self._f_split(s, Y, Z) else ["split", "top"]
@@ -144,103 +167,93 @@ class AdaptiveSystem(LawComparison):
         if peak == 0.0:
             tops = ["split"]
         keeps = ("kept", "zero") if s > MIN_ANGLE_BOUND_SHARE * Z else ("zero",)
-        learns: list[Modes] = [(), ("held",)] if peak > 0 and k < MIN_GAIN_SHARE * self._lam else [()]
+        learns: list[Modes] = [(), ("held",)] if peak > 0 and k < MIN_GAIN_SHARE * self.floats.lam else [()]
         return tuple((keep, top, *held) for keep in keeps for held in learns for top in tops)
 
     def _f_top(self, y: float) -> float:
-        return 2.0 * self._a * (1.0 + y * y / (4.0 * self._a)) ** 2
+        return 2.0 * float(self.floats.a) * (1.0 + y * y / (4.0 * float(self.floats.a))) ** 2
 
     def _f_split(self, s: float, Y: float, Z: float) -> float:
-        return (2.0 - s * s) * (Y * Y + 2.0 * self._a * Z * Z)
+        return (2.0 - s * s) * (Y * Y + 2.0 * float(self.floats.a) * Z * Z)
 
-    def rate(
-        self, gain_square: float, state: Sequence[float], modes: Modes, peak: float, slack: float
-    ) -> tuple[float, ...]:
-        """Floats; each bound pushed outwards by `slack` times its own scale."""
-        y, s, k, r, Y, Z, L, U = state
-        lam, c, G = self._lam, self.coupling, gain_square
-        S, T, a2 = s * s, Z * Z, 2.0 * self._a
-        room_low, room_high = 2.0 - S, 2.0 - T
-        scale = slack * peak * (L + lam)
-        low_pull, high_pull = 0.5 * G * L * room_low, 0.5 * G * k * room_high
-        drift, spread = c * Y, slack * 0.1 * c * Y
-        s_rate = 0.0
-        if modes[0] == "kept":
-            s_rate = -drift * angle_factor_float(S) - low_pull * s - scale * s - spread
-        square, top = y * y, Y * Y
-        f_low = min(room_low * (square + a2 * S), room_high * (square + a2 * T))
-        mode = modes[1]
-        if mode == "split":
-            f_high = room_low * (top + a2 * T)
-        elif mode == "rising":
-            f_high = room_high * (top + a2 * T)
-        elif mode == "falling":
-            f_high = room_low * (top + a2 * S)
+    def slopes(self, G: Any, x: Sequence[Any], modes: Modes, n: Any) -> dict[str, Slope]:
+        """State the module's inequalities."""
+        y, s, k, r, Y, Z, L, U = x
+        lam, gamma, a, c = n.lam, n.gamma, n.a, n.c
+        S, T, top = s * s, Z * Z, Y * Y
+        room_low, room_high = 2 - S, 2 - T
+        low_pull, high_pull = G * L * room_low / 2, G * k * room_high / 2
+        if modes[1] == "top":
+            crest = 1 + top / (4 * a)
+            f = 2 * a * (crest * crest)
         else:
-            f_high = self._f_top(Y)
-        gamma = self._gamma
-        gain_scale = slack * peak * gamma * U * 2.0 * (top + a2 * T)
+            room = room_high if modes[1] == "rising" else room_low
+            f = room * (top + 2 * a * (S if modes[1] == "falling" else T))
+        slopes = {
+            "y": -low_pull * y,
+            "k": tuple(
+                gamma * r * G * (room * (y * y + 2 * a * square))
+                for room, square in ((room_low, S), (room_high, T))
+            ),
+            "r": -lam * r + G * room_high,
+            "Y": -high_pull * Y,
+            "Z": c * Y * angle_factor(T) - high_pull * Z,
+            "L": gamma * U * G * f,
+            "U": -lam * U + G * room_low,
+        }
+        if modes[0] == "kept":
+            slopes["s"] = -c * Y * angle_factor(S) - low_pull * s
+        return slopes
+
+    def signs_of(self, x: Sequence[Any], modes: Modes, n: Any) -> Iterator[Any]:
+        """Every component >= 0, s <= sqrt 2, the lower bound of s zero or kept, and where f is greatest."""
+        y, s, k, r, Y, Z, _, U = x
+        yield 2 - Z * Z
+        yield from (y, s, k, r, Z, U)
+        if modes[0] == "zero":
+            yield -s
+        if modes[1] == "rising":
+            yield 4 * n.a - Y * Y - Z * Z * (4 * n.a)
+        elif modes[1] == "falling":
+            yield Y * Y + s * s * (4 * n.a) - 4 * n.a
+
+    def pushed(
+        self, slopes: Mapping[str, float], state: Sequence[float], modes: Modes, peak: float, slack: float
+    ) -> tuple[float, ...]:
+        """Push each by `slack` times its own scale; k may be held."""
+        y, s, _, r, Y, Z, L, U = state
+        lam, c, gamma, a2 = self.floats.lam, self.coupling, self.floats.gamma, 2.0 * self.floats.a
+        scale, spread = slack * peak * (L + lam), slack * 0.1 * c * Y
+        gain_scale = slack * peak * gamma * U * 2.0 * (Y * Y + a2 * (Z * Z))
         gain_scale += ABOVE_ROUNDING * peak * (L + lam)
-        k_rate = gamma * r * G * f_low - gain_scale
         return (
-            -low_pull * y - scale * y,
-            s_rate,
-            0.0 if "held" in modes else k_rate,
-            -lam * r + G * room_high - slack * filter_scale(lam * r, peak),
-            -high_pull * Y + scale * Y,
-            drift * angle_factor_float(T) - high_pull * Z + scale * Z + spread,
-            gamma * U * G * f_high + gain_scale,
-            -lam * U + G * room_low + slack * (lam * U + peak),
+            slopes["y"] - scale * y,
+            slopes["s"] - scale * s - spread if "s" in slopes else 0.0,
+            0.0 if "held" in modes else slopes["k"] - gain_scale,
+            slopes["r"] - slack * filter_scale(lam * r, peak),
+            slopes["Y"] + scale * Y,
+            slopes["Z"] + scale * Z + spread,
+            slopes["L"] + gain_scale,
+            slopes["U"] + slack * (lam * U + peak),
         )
 
-    def conditions(
-        self, gain_square: Bernstein, x: Sequence[Bernstein], dx: Sequence[Bernstein], modes: Modes
-    ) -> Iterator[Bernstein]:
-        """Polynomials >= 0 iff every bound holds; the signs they rest on among them."""
-        y, s, k, r, Y, Z, L, U = x
-        dy, ds, dk, dr, dY, dZ, dL, dU = dx
-        G, lam, c = gain_square, self._lam_exact, self._c
-        S, T = s * s, Z * Z
-        room_low, room_high = TWO - S, TWO - T
-        yield room_high
-        yield from (y, s, k, r, Z)
-        low_pull, high_pull = G * L * room_low * self._half, G * k * room_high * self._half
-        yield -dy - low_pull * y
-        yield dY + high_pull * Y
-        if modes[0] == "kept":
-            yield -ds - Y * angle_factor(S) * c - low_pull * s
-        else:
-            yield -s
-        yield dZ - Y * angle_factor(T) * c + high_pull * Z
-        yield G * room_high - r * lam - dr
-        yield dU + U * lam - G * room_low
-        a2 = 2 * self._a_exact
-        intake = G * r * self._gamma_exact
-        for room, square in ((room_low, S), (room_high, T)):
-            yield intake * room * (y * y + square * a2) - dk
-        yield from self._upper_gain(G, S, T, Y, U, dL, modes[1])
 
-    def _upper_gain(
-        self,
-        G: Bernstein,
-        S: Bernstein,
-        T: Bernstein,
-        Y: Bernstein,
-        U: Bernstein,
-        dL: Bernstein,
-        mode: str,
-    ) -> Iterator[Bernstein]:
-        a = self._a_exact
-        square = Y * Y
-        if mode == "top":
-            f = (ONE + square * (1 / (4 * a))) * (ONE + square * (1 / (4 * a))) * (2 * a)
-        elif mode == "rising":
-            f = (TWO - T) * (square + T * (2 * a))
-            yield ONE * (4 * a) - square - T * (4 * a)
-        elif mode == "falling":
-            f = (TWO - S) * (square + S * (2 * a))
-            yield square + S * (4 * a) - ONE * (4 * a)
-        else:
-            f = (TWO - S) * (square + T * (2 * a))
-        yield U
-        yield dL - G * U * f * self._gamma_exact
+@final
+class AdaptiveProof(ComparisonProof):
+    """Laws whose equations are those of adaptive scaling, whatever they are called."""
+
+    name = "adaptive-scaling"
+
+    def system(self, law: Law, bounds: BodyBounds) -> AdaptiveSystem:
+        """Read lambda, gamma, a, R(0) and k(0) off the law's equations and states."""
+        known = compared_law(law)
+        if not known.adaptive:
+            raise NoComparisonError(f"{law_words(law)} has no gain of its own")
+        return AdaptiveSystem(
+            decay=known.decay,
+            initial_filter=known.initial_filter,
+            learning_rate=known.learning_rate,
+            initial_gain=known.initial_gain,
+            weight=known.weight,
+            coupling=bounds.coupling,
+        )

@@ -12,18 +12,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from math import exp
-from typing import final
+from typing import Any, final
 
-from ..exact.bernstein import Bernstein
-from ..exact.rational import rational
+from ..flow.inequalities import Slope, StatedSystem
 from ..flow.stepping import Modes
-from .comparison import ATTITUDE_BOUND_LOST, ROUND_UP, TWO, filter_scale
+from .comparison import ATTITUDE_BOUND_LOST, ROUND_UP, filter_scale
 from .tail import PeriodicSystem
 
 
 @final
-class AdaptiveTailSystem(PeriodicSystem):
+class AdaptiveTailSystem(StatedSystem, PeriodicSystem):
     """Components k, r (lower bounds), Y, Z, L, U (upper bounds of y, s, k, R)."""
 
     names = ("k", "r", "Y", "Z", "L", "U")
@@ -34,15 +32,8 @@ class AdaptiveTailSystem(PeriodicSystem):
     def __init__(
         self, *, decay: Fraction, learning_rate: Fraction, weight: Fraction, coupling: float
     ) -> None:
-        self._lam, self._gamma, self._a = float(decay), float(learning_rate), float(weight)
-        self._coupling = coupling
-        self._lam_exact, self._c = rational(decay), rational(coupling)
-        self._gamma_exact, self._a_exact = rational(learning_rate), rational(weight)
-        self._half = Bernstein.constant(Fraction(1, 2))
-
-    def contraction(self, period: float) -> float:
-        """exp(-lambda T): what R forgets over a period."""
-        return exp(-self._lam * period)
+        super().__init__(lam=decay, gamma=learning_rate, a=weight, c=coupling)
+        self.decay = decay
 
     def limits(
         self, start: Mapping[str, float], end: Mapping[str, float], ratios: Mapping[str, float]
@@ -57,37 +48,41 @@ class AdaptiveTailSystem(PeriodicSystem):
         del peak
         return (("tail",),) if state[3] ** 2 < ATTITUDE_BOUND_LOST else ()
 
-    def rate(
-        self, gain_square: float, state: Sequence[float], modes: Modes, peak: float, slack: float
-    ) -> tuple[float, ...]:
-        """Floats; each bound pushed outwards by `slack` times its own scale."""
-        del modes
-        k, r, Y, Z, L, U = state
-        G, lam, T = gain_square, self._lam, Z * Z
-        pull, scale = 0.5 * G * k * (2.0 - T), slack * peak * (L + lam)
-        intake = 2.0 * self._gamma * U * (Y * Y + 2.0 * self._a * T)
-        return (
-            0.0,
-            -lam * r + G * (2.0 - T) - slack * filter_scale(lam * r, peak),
-            (scale - pull) * Y,
-            self._coupling * Y * (1.0 + 0.1 * slack) + (scale - pull) * Z,
-            intake * (G + slack * peak) + 1e-11 * peak * (L + lam),
-            -lam * U + 2.0 * G + slack * (lam * U + peak),
-        )
-
-    def conditions(
-        self, gain_square: Bernstein, x: Sequence[Bernstein], dx: Sequence[Bernstein], modes: Modes
-    ) -> Iterator[Bernstein]:
-        """Polynomials >= 0 iff every bound holds; the signs they rest on among them."""
+    def slopes(self, G: Any, x: Sequence[Any], modes: Modes, n: Any) -> dict[str, Slope]:
+        """State the module's inequalities."""
         del modes
         k, r, Y, Z, _, U = x
-        dk, dr, dY, dZ, dL, dU = dx
-        G, T = gain_square, Z * Z
-        room = TWO - T
-        pull = G * k * room * self._half
-        yield from (room, k, Y, Z, U, -dk)
-        yield G * room - r * self._lam_exact - dr
-        yield dY + pull * Y
-        yield dZ - Y * self._c + pull * Z
-        yield dL - G * U * (Y * Y + T * (2 * self._a_exact)) * (2 * self._gamma_exact)
-        yield dU + U * self._lam_exact - G * 2
+        T = Z * Z
+        pull = G * k * (2 - T) / 2
+        return {
+            "k": 0,
+            "r": -n.lam * r + G * (2 - T),
+            "Y": -pull * Y,
+            "Z": n.c * Y - pull * Z,
+            "L": 2 * n.gamma * U * (Y * Y + 2 * n.a * T) * G,
+            "U": -n.lam * U + 2 * G,
+        }
+
+    def signs_of(self, x: Sequence[Any], modes: Modes, n: Any) -> Iterator[Any]:
+        """0 <= s <= sqrt 2, and k, Y, U >= 0."""
+        del modes, n
+        k, _, Y, Z, _, U = x
+        yield from (2 - Z * Z, k, Y, Z, U)
+
+    def pushed(
+        self, slopes: Mapping[str, float], state: Sequence[float], modes: Modes, peak: float, slack: float
+    ) -> tuple[float, ...]:
+        """Push each by `slack` times its own scale."""
+        del modes
+        _, r, Y, Z, L, U = state
+        lam, gamma, a = self.floats.lam, self.floats.gamma, self.floats.a
+        scale, above_rounding = slack * peak * (L + lam), 1e-11 * peak * (L + lam)
+        intake = 2.0 * gamma * U * (Y * Y + 2.0 * a * (Z * Z))
+        return (
+            0.0,
+            slopes["r"] - slack * filter_scale(lam * r, peak),
+            slopes["Y"] + scale * Y,
+            slopes["Z"] + scale * Z + slack * 0.1 * self.floats.c * Y,
+            slopes["L"] + intake * (slack * peak) + above_rounding,
+            slopes["U"] + slack * (lam * U + peak),
+        )

@@ -11,13 +11,14 @@ from ...models.laws import LAWS, Law
 from ...models.norms import MEASURED, Norm
 from ...models.schedule import Schedule
 from ..verdict import Claim
-from .certificate import floor_certificate
+from .certificate import floor_certificate, refusal
 from .certify import MAX_PERIOD_WINDOWS, FilterLowerBound, certify_floor
 from .claims import FloorFacts, convergence_claim, floor_claim, reaches_far_enough, torque_claim
 from .converged import ConvergedFilter, ConvergedFloor
 from .convergence import Convergence, analyse_convergence
+from .known_proofs import own_proofs, system_of
 from .question import FloorQuestion
-from .recognise import NoComparisonError, compared_law, follows_filter
+from .recognise import NoComparisonError, follows_filter
 from .refine import tighten_settling_time
 from .torque_bound import TorqueBound, torque_bound
 from .worst_found import WorstFound, find_worst
@@ -76,8 +77,11 @@ def answer(question: FloorQuestion) -> FloorAnswer:
     certificate = None
     if floor is not None and reaches_far_enough(floor):
         certificate = floor_certificate(q, floor, convergence=found, torque=torque)
+    refused = refusal(certificate, floor) if certificate is not None and floor is not None else ""
+    if refused:
+        floor = torque = found = certificate = None
     facts = FloorFacts(
-        no_system=_no_system(q.law) if floor is None else "",
+        no_system=refused or (_no_system(q) if floor is None else ""),
         no_system_step=_no_system_step(q.law) if floor is None else "",
         floor=floor,
         converged=converged,
@@ -85,7 +89,9 @@ def answer(question: FloorQuestion) -> FloorAnswer:
         worst=worst,
         certificate=certificate,
     )
-    claims = [floor_claim(facts), convergence_claim(facts, found, float(q.attitude), float(q.rate))]
+    claims = [convergence_claim(facts, found, float(q.attitude), float(q.rate))]
+    if floor is None or floor.system.floor_component is not None:
+        claims.insert(0, floor_claim(facts))
     if q.torque_limit is not None:
         claims.append(torque_claim(facts, torque, q.torque_limit, q.torque_norm, q.run_peak))
     return FloorAnswer(tuple(claims), floor, converged, worst, torque, found)
@@ -97,10 +103,10 @@ def _measured(q: FloorQuestion) -> tuple[Norm, ...]:
     return tuple(dict.fromkeys((*MEASURED, *own)))
 
 
-def _no_system(law: Law) -> str:
+def _no_system(question: FloorQuestion) -> str:
     """Why a law has no comparison system."""
     try:
-        compared_law(law)
+        system_of(question.law, question.bounds)
     except NoComparisonError as error:
         return str(error)
     return ""
@@ -110,7 +116,12 @@ def _no_system_step(law: Law) -> str:
     """What the user of a law without comparison system can do."""
     if LAWS.get(law.name) is type(law):
         return "judge the law by its runs (intermit compare), and leave this key out of [check] claims"
-    return "write the law as docs/theory-floor.md does: + - * / alone, no limit on the torque in it"
+    if own_proofs(law):
+        return f"mend the proof that {type(law).__name__}.proofs returns, or its part of the checker"
+    return (
+        f"return a comparison system from {type(law).__name__}.proofs (docs/own-proof.md), or write the law "
+        "as docs/theory-floor.md does: + - * / alone, no limit on the torque in it"
+    )
 
 
 def _search_horizon(schedule: Schedule) -> Fraction:

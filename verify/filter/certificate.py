@@ -8,7 +8,8 @@ from math import frexp
 from typing import TYPE_CHECKING
 
 from ...models.closed_loop import close_loop
-from ..certificates.format import Certificate
+from .. import checker
+from ..certificates.format import Certificate, certificate_text
 from ..certificates.schedule import schedule_data
 from ..flow.stepping import Step
 from ..lyapunov.forms import law_form
@@ -20,7 +21,8 @@ if TYPE_CHECKING:
     from .question import FloorQuestion
     from .torque_bound import TorqueBound
 
-KIND = "filter-floor"
+FLOOR, WITHOUT_FILTER = "filter-floor", "comparison"
+"""Kinds of certificates of laws with a filter state R, and of laws without."""
 MANTISSA = 53
 """Bits of a float's mantissa."""
 
@@ -46,7 +48,10 @@ def floor_certificate(
         Its bound of |g u| is claimed too.
     """
     q, data = question, question_data(question)
-    claim: dict[str, object] = {"floor": Fraction(floor.value)}
+    system = floor.system
+    claim: dict[str, object] = {}
+    if system.floor_component is not None:
+        claim["floor"] = Fraction(floor.value)
     tails = [w.tail for w in floor.flowpipes]
     if floor.horizon is not None:
         claim["horizon"] = floor.horizon
@@ -59,7 +64,23 @@ def floor_certificate(
         claim["settling"] = {"time": time, "attitude": q.attitude, "rate": q.rate}
     if torque is not None:
         claim["torque"] = Fraction(torque.applied)
-    return Certificate(KIND, data, claim, _flowpipes(floor))
+    kind = WITHOUT_FILTER if system.floor_component is None else FLOOR
+    named = {"system": system.system_name} if system.system_name else {}
+    return Certificate(kind, data, claim, named | _flowpipes(floor))
+
+
+def refusal(certificate: Certificate, floor: FilterLowerBound) -> str:
+    """Why the checker does not accept a certificate that rests on a system from outside; empty if it does.
+
+    Such a system counts only with its own part of the checker, which states its inequalities once more.
+    """
+    system = floor.system
+    if not system.system_name:
+        return ""
+    if system.part is None:
+        return f"the comparison system {system.system_name} brings no part of the checker"
+    findings = checker.check_text(certificate_text([certificate]), (system.part,))
+    return next((finding.reason for finding in findings if not finding.valid), "")
 
 
 def question_data(question: FloorQuestion) -> dict[str, object]:

@@ -11,18 +11,18 @@ from fractions import Fraction
 from functools import cached_property
 from heapq import heapify, heappop, heappush
 from itertools import count
-from math import ceil
+from math import ceil, inf
 from typing import final
 
 from ...models.laws import Law
 from ...models.schedule import Schedule
-from ..flow.stepping import CannotProceedError, ComparisonSystem, Stepper
+from ..flow.stepping import CannotProceedError, ComparisonSystem, Step, Stepper
 from ..schedule.zero_runs import longest_zero_run
-from .adaptive import AdaptiveSystem
 from .comparison import BodyBounds
-from .flowpipe import Flowpipe, LawComparison
-from .persistence import PersistenceSystem
-from .recognise import NoComparisonError, compared_law
+from .flowpipe import Flowpipe
+from .known_proofs import system_of
+from .law_system import LawSystem
+from .recognise import NoComparisonError
 from .sets import InitialSet
 from .tail import MAX_RATIO, Tail, find_tail
 
@@ -49,7 +49,7 @@ class FloorOptions:
     ----------
     degree : degree of the flowpipe's polynomials
     slack : relative slack of the inequalities, traded against the number of steps
-    max_bins : bins of the initial set (only the adaptive law needs more than one)
+    max_bins : bins of the initial set, for a system that gains by them
     max_periods : periods after which no tail is looked for any more; up to ten times as many where
         lambda times the period is small
     settling_moves : how often the bin that settles last is refined (see `sooner`)
@@ -89,6 +89,13 @@ class FilterLowerBound:
     flowpipes: tuple[Flowpipe, ...]
     horizon: Fraction | None
 
+    @property
+    def system(self) -> LawSystem:
+        """The law's comparison system."""
+        system = self.flowpipes[0].system
+        assert isinstance(system, LawSystem)
+        return system
+
     @cached_property
     def value(self) -> float:
         """R >= value, s, over the time covered, for every trajectory from the initial set."""
@@ -112,28 +119,16 @@ class FilterLowerBound:
         return min((w.failed_at for w in self.flowpipes if w.failed_at is not None), default=None)
 
 
-def comparison_system(law: Law, bounds: BodyBounds) -> LawComparison | None:
+def comparison_system(law: Law, bounds: BodyBounds) -> LawSystem | None:
     """Return the comparison system of a law, or None for laws that have none.
 
-    It rests on the law's equations, compared as polynomials (see `compared_law`), and on no name or class.
+    It rests on the law's equations, compared as polynomials (see `system_of`), and on no name or class.
     None too for parameters the inequalities do not cover: lambda, R(0), gamma or a <= 0, k(0) < 0.
     """
     try:
-        known = compared_law(law)
+        return system_of(law, bounds)
     except NoComparisonError:
         return None
-    if not known.adaptive:
-        return PersistenceSystem(
-            decay=known.decay, initial_filter=known.initial_filter, coupling=bounds.coupling
-        )
-    return AdaptiveSystem(
-        decay=known.decay,
-        initial_filter=known.initial_filter,
-        learning_rate=known.learning_rate,
-        initial_gain=known.initial_gain,
-        weight=known.weight,
-        coupling=bounds.coupling,
-    )
 
 
 def idle_exponent(law: Law, schedule: Schedule) -> float:
@@ -193,10 +188,10 @@ def certify_floor(
     if horizon is None and schedule.period is None:
         horizon = schedule.end
     run = FloorProof(system, schedule, horizon, options)
-    if isinstance(system, PersistenceSystem):
-        flowpipes: tuple[Flowpipe, ...] = (run.complete(Flowpipe(system, initial, ())),)
-    else:
+    if system.is_binned:
         flowpipes = run.binned(initial, bounds)
+    else:
+        flowpipes = (run.complete(Flowpipe(system, initial, ())),)
     ends = [w.failed_at if w.failed_at is not None else w.end for w in flowpipes if w.tail is None]
     reached = min(ends, default=None)
     return FilterLowerBound(law, bounds, schedule, initial, flowpipes, reached)
@@ -218,7 +213,7 @@ def _first_jump(schedule: Schedule) -> Fraction | None:
 class FloorProof:
     """How flowpipes are made for one system and schedule; step sizes carry over from one to the next."""
 
-    system: LawComparison
+    system: LawSystem
     schedule: Schedule
     horizon: Fraction | None
     options: FloorOptions
@@ -252,12 +247,12 @@ class FloorProof:
                 return Flowpipe(self.system, early.initial, (*steps, *failure.steps), failed_at=failure.time)
             if period is None or stop % period != 0 or stop < not_before:
                 continue
-            least = min(least, *(min(s.controls["r"]) for s in steps if s.start >= start))
+            least = min(least, *(_floor_of(self.system, s) for s in steps if s.start >= start))
             state = steps[-1].end_state()
             before = next((s.end_state() for s in steps if s.stop == stop - period), None)
             tail = self._tail(stop, state, before) if before is not None else None
             if tail is not None:
-                lowest = min(min(s.controls["r"]) for s in tail.steps)
+                lowest = min(_floor_of(self.system, s) for s in tail.steps)
                 if lowest >= 0.999 * least or stop >= self._max_periods * period:
                     return Flowpipe(self.system, early.initial, tuple(steps), tail)
         return Flowpipe(self.system, early.initial, tuple(steps))
@@ -311,7 +306,7 @@ class FloorProof:
         """Periods enough for the rate's push to fade: s may grow for some 2/lambda before it shrinks."""
         assert self.schedule.period is not None
         asked, loss = self.options.max_periods, self.system.decay * self.schedule.period
-        return max(asked, min(10 * asked, ceil(MIN_DECAY_EXPONENT / loss)))
+        return max(asked, min(10 * asked, ceil(MIN_DECAY_EXPONENT / loss))) if loss > 0 else asked
 
     @property
     def _max_bins(self) -> int:
@@ -349,6 +344,11 @@ class FloorProof:
         openings = [w.on for w in self.schedule.support_between(Fraction(0), span)][:3]
         rise = next(p for p in self.schedule.pieces_between(openings[-1], span) if p.start == openings[-1])
         return rise.end if self.horizon is None else min(rise.end, self.horizon)
+
+
+def _floor_of(system: LawSystem, step: Step) -> float:
+    """Least Bernstein coefficient of the filter's floor on a step; inf of a law without filter."""
+    return inf if system.floor_component is None else min(step.controls[system.floor_component])
 
 
 def _merit(flowpipe: Flowpipe) -> float:

@@ -121,18 +121,14 @@ def convergence_claim(facts: FloorFacts, found: Convergence | None, attitude: fl
         statement += (
             f"; |bv| <= {attitude:g} and |w| <= {rate:g} rad/s for good after {_up(found.settling)} s"
         )
-    cascade = Evidence(
-        EvidenceKind.THEOREM,
-        "any lambda > 0 suffices once inf R > 0: |Omega|_J decays as exp(-m/2) and the attitude follows, m "
-        "the integral of g^2 kappa (1 + b0)",
-        source=PAGE,
-    )
+    system = floor.system
+    why = (Evidence(EvidenceKind.THEOREM, system.why_it_converges, PAGE),) if system.why_it_converges else ()
     return Claim(
         key="convergence",
         title=title,
         statement=statement,
         verdict=Verdict.PROVED,
-        evidence=(_certificate(facts, floor), cascade),
+        evidence=(_certificate(facts, floor), *why),
         quantities=quantities,
         source=PAGE,
     )
@@ -190,7 +186,8 @@ def torque_claim(
         reason += f"; the largest torque {whose}, {value:.4g} N m, {word}"
         if value > 0:
             reason += f" (the bound is {bound.applied / value:.2g} times it)"
-    step = "narrow the initial set, lower the gains (lambda, gamma, k0), or raise the limit"
+    gains = ", ".join(floor.law.parameters)
+    step = f"narrow the initial set, lower the gains ({gains}), or raise the limit"
     return _undecided("torque.limit", title, statement, reason, step, quantities)
 
 
@@ -276,6 +273,11 @@ def _certificate(facts: FloorFacts, floor: FilterLowerBound) -> Evidence:
         f"{len(floor.flowpipes)} polynomial sub- and supersolutions, {floor.steps} steps, every differential "
         "inequality proved by Bernstein coefficients in exact rationals"
     )
+    part = floor.system.part
+    if part is not None:
+        summary += (
+            f"; they are the law's own, restated by its part of the checker ({part.title})"
+        )
     details: dict[str, object] = {"steps": floor.steps}
     if facts.certificate is not None:
         details["certificate"] = facts.certificate
@@ -294,19 +296,17 @@ def _search_evidence(facts: FloorFacts) -> tuple[Evidence, ...]:
 
 
 def _shortfall(floor: FilterLowerBound) -> tuple[str, str]:
-    if floor.law.parameters.get("k0") == 0 and floor.initial.s_low == floor.initial.y_low == 0:
-        return (
-            "k(0) = 0: the nearer a start is to the target, the less its gain learns; no decay is certified "
-            "for all of them at once",
-            "take k0 > 0",
-        )
+    told = floor.system.why_stuck(floor.initial)
+    if told is not None:
+        return told
     gap = longest_zero_run(floor.schedule)
     exponent = idle_exponent(floor.law, floor.schedule)
-    if floor.failed_at is not None and gap is not None and exponent > FORGOTTEN:
-        adaptive = "k0" in floor.law.parameters
+    has_filter = floor.system.floor_component is not None
+    if has_filter and floor.failed_at is not None and gap is not None and exponent > FORGOTTEN:
+        learns = "k" in (state.name for state in floor.law.controller_states)
         then = (
             "the gain k learns by it: next to nothing is certified of what it learns"
-            if adaptive
+            if learns
             else "the gain of the next window is one over what is left"
         )
         if gap.on == 0:
@@ -333,8 +333,9 @@ def _shortfall(floor: FilterLowerBound) -> tuple[str, str]:
             "narrow the initial set (smaller error angle or rate), or shorten the first off-time",
         )
     end = float(floor.horizon) if floor.horizon is not None else 0.0
+    held = f"R >= {_down(floor.value)} s is" if isfinite(floor.value) else "bounds are"
     return (
-        f"R >= {_down(floor.value)} s is certified on [0, {end:g}] s only: no repeating bound was found",
+        f"{held} certified on [0, {end:g}] s only: no repeating bound was found",
         "allow more periods, or narrow the initial set",
     )
 

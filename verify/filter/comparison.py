@@ -25,17 +25,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import final
+from typing import Any, final
 
 from ...models.rigid_body import RigidBody
 from ..exact.ball import ball, float_above
-from ..exact.bernstein import Bernstein
 from ..exact.matrix import greatest_eigenvalue_above, least_eigenvalue_below
 
-ONE = Bernstein.constant(1)
-TWO = Bernstein.constant(2)
-QUARTER, THIRTY_SECOND = Bernstein.constant(Fraction(1, 4)), Bernstein.constant(Fraction(1, 32))
-ZERO = Bernstein.constant(0)
 ATTITUDE_BOUND_LOST = 1.98
 """Above this S = 1 - b0 (337 deg) the error-angle bound counts as having reached 2 pi."""
 NO_BOUND = 1.5
@@ -88,14 +83,9 @@ class BodyBounds:
         return float_above(1 / (8 * ball(self.least)).sqrt())
 
 
-def angle_factor(S: Bernstein) -> Bernstein:
-    """A(S) = 1 - S/4 - S^2/32, an upper bound of sqrt(1 - S/2) on 0 <= S <= 2."""
-    return ONE - S * (QUARTER + S * THIRTY_SECOND)
-
-
-def angle_factor_float(S: float) -> float:
-    """A(S) in floats."""
-    return 1.0 - S * (0.25 + 0.03125 * S)
+def angle_factor(S: Any) -> Any:
+    """A(S) = 1 - S/4 - S^2/32, an upper bound of sqrt(1 - S/2) on 0 <= S <= 2, in any arithmetic."""
+    return 1 - S * (8 + S) / 32
 
 
 def at_least_tiny(value: float) -> float:

@@ -20,10 +20,10 @@ import numpy as np
 
 from ...models.schedule import Schedule
 from ..exact.ball import sqrt_below
+from .boxes import OUTWARD, Box, greatest_bv
 from .certify import FilterLowerBound
-from .flowpipe import Box, Flowpipe
+from .flowpipe import Flowpipe
 from .over_time import angle_above
-from .torque_bound import OUTWARD, greatest_bv
 
 
 @final

@@ -18,6 +18,7 @@ from ...models.types import Array
 from ..exact.bernstein import lower_bound
 from ..exact.rounding import rounded_down, rounded_up
 from ..flow.stepping import Step
+from .boxes import Box
 from .sets import InitialSet
 from .tail import PeriodicSystem, Tail
 
@@ -27,41 +28,15 @@ ROUNDING = 1e-14
 """Relative allowance for the rounding of a convex combination of fewer than 20 floats (2e-15)."""
 
 
-@final
-@dataclass(frozen=True)
-class Box:
-    """Bounds that hold at every t in [start, stop] for every trajectory of the initial set.
+class LawComparison(PeriodicSystem):
+    """A comparison system of one law with Omega = w + 2 g^2 kappa bv, and the names of what it bounds.
 
     Attributes
     ----------
-    start, stop : time, s
-    cosine_gap : upper bound of S = 1 - b0; it may exceed 2 in a tail, where it is scaled down
-    weighted_rate : upper bound of y = |Omega|_J, sqrt(kg m^2) rad/s
-    filter_low, filter_high : bounds of R, s
-    gain_low, gain_high : bounds of kappa, 1/s
-    gain_max : bound of |g| in the interval
-    slope_low, slope_high : bounds of g' in the interval, 1/s
+    floor_component : the component that bounds the law's filter state R from below, or None
     """
 
-    start: float
-    stop: float
-    cosine_gap: float
-    weighted_rate: float
-    filter_low: float
-    filter_high: float
-    gain_low: float
-    gain_high: float
-    gain_max: float
-    slope_low: float
-    slope_high: float
-
-
-class LawComparison(PeriodicSystem):
-    """A comparison system of one law, with the names of what it bounds."""
-
-    floor_component = "r"
-    decay: Fraction
-    """lambda, 1/s."""
+    floor_component: str | None = None
 
     @abstractmethod
     def start(self, initial: InitialSet) -> tuple[float, ...]:
@@ -73,7 +48,10 @@ class LawComparison(PeriodicSystem):
 
     @abstractmethod
     def bounds(self, low: dict[str, Array], high: dict[str, Array]) -> dict[str, Array]:
-        """Box fields from least and greatest values of the components; in the tail too."""
+        """Box fields from least and greatest values of the components; in the tail too.
+
+        cosine_gap, weighted_rate, gain_low, gain_high, and where there is a filter filter_low, filter_high.
+        """
 
 
 @final
@@ -96,7 +74,9 @@ class Flowpipe:
 
     @cached_property
     def floor(self) -> float:
-        """A proved lower bound of R over the time covered, s."""
+        """A proved lower bound of R over the time covered, s; inf of a law without filter."""
+        if self.system.floor_component is None:
+            return inf
         least = Fraction(10**9)
         everything = [s.controls[self.system.floor_component] for s in self.all_steps()]
         for controls in sorted(everything, key=min):
@@ -167,7 +147,8 @@ def step_boxes(
     shared = _gain_extremes(step.shape, step.part, step.length, parts)
     times = [float(step.start + step.length * Fraction(i, parts)) for i in range(parts + 1)]
     for i in range(parts):
-        row = {name: float(values[i]) for name, values in fields.items()}
+        row = {"filter_low": inf, "filter_high": 0.0}
+        row |= {name: float(values[i]) for name, values in fields.items()}
         gain, slope_low, slope_high = shared[i]
         yield Box(times[i], times[i + 1], gain_max=gain, slope_low=slope_low, slope_high=slope_high, **row)
 

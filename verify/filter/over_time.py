@@ -17,9 +17,10 @@ import numpy as np
 from ...models.types import Array
 from ..exact.ball import ball, float_above, sqrt_below
 from ..exact.rounding import rounded_up
+from .boxes import OUTWARD, BoxColumns, greatest_bv
 from .certify import FilterLowerBound
 from .flowpipe import Flowpipe
-from .torque_bound import OUTWARD, BoxColumns, greatest_bv, torque_bounds
+from .torque_bound import torque_bounds
 
 CELLS = 800
 """Cells of the grid from 0 to the horizon."""
@@ -65,7 +66,7 @@ def bounds_over_time(floor: FilterLowerBound, horizon: Fraction, cells: int = CE
         for boxes in _unrolled(flowpipe, floor.schedule.period, horizon, cells):
             box, cell = _cells(edges, boxes)
             speed = _speeds(boxes, root)
-            applied, _ = torque_bounds(flowpipe.system, floor.bounds, boxes)
+            applied, _ = torque_bounds(floor.system, floor.bounds, boxes)
             np.minimum.at(least, cell, boxes.low_filter[box])
             for held, values in ((gaps, boxes.S), (rates, boxes.y), (speeds, speed), (torques, applied)):
                 np.maximum.at(held, cell, values[box])

@@ -14,36 +14,38 @@ uses "angle" (sigma = s^2), "cascade" (sigma = R0 z^2/r, valid where r touches R
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from math import exp
-from typing import final
+from typing import Any, final
 
+import casadi as ca
 import numpy as np
 
+from ...models.closed_loop import ClosedLoop
+from ...models.laws import Expression, Law
 from ...models.types import Array
-from ..exact.bernstein import Bernstein
-from ..exact.rational import rational
-from ..exact.rounding import rounded_down
+from ..exact.rounding import rounded_down, rounded_up
+from ..flow.inequalities import Slope
 from ..flow.stepping import Modes
+from .boxes import BoxColumns, Interval
 from .comparison import (
     ATTITUDE_BOUND_LOST,
     NO_BOUND,
-    ONE,
     ROUND_UP,
-    TWO,
+    BodyBounds,
     angle_factor,
-    angle_factor_float,
     at_least_tiny,
     drives_attitude,
     filter_scale,
 )
-from .flowpipe import LawComparison
+from .law_system import LawSystem
+from .proofs import CASCADE, ComparisonProof, attitude_measures
+from .recognise import NoComparisonError, compared_law, law_words
 from .sets import InitialSet
 
 
 @final
-class PersistenceSystem(LawComparison):
+class PersistenceSystem(LawSystem):
     """Components K, y, s, v, z, r of the module's inequalities.
 
     Parameters
@@ -57,17 +59,15 @@ class PersistenceSystem(LawComparison):
     names = ("K", "y", "s", "v", "z", "r")
     signs = (-1, 1, 1, 1, 1, -1)
     decaying: tuple[tuple[str, ...], ...] = (("y", "s"), ("v", "z"))
+    floor_component = "r"
+    why_it_converges = CASCADE
 
     def __init__(
         self, *, decay: Fraction, initial_filter: Fraction, coupling: float, scalable: bool = False
     ) -> None:
+        super().__init__(lam=decay, R0=initial_filter, c=coupling)
         self.decay, self.initial_filter, self.coupling = decay, initial_filter, coupling
         self.scalable = scalable
-        self._lam, self._R0 = float(decay), float(initial_filter)
-        half = Bernstein.constant(Fraction(1, 2))
-        self._half, self._quarter = half, half * half
-        self._lam_exact, self._c = rational(decay), rational(coupling)
-        self._R0_exact = rational(initial_filter)
 
     def start(self, initial: InitialSet) -> tuple[float, ...]:
         """Values at t = 0, on the safe side of the initial set."""
@@ -85,14 +85,17 @@ class PersistenceSystem(LawComparison):
             system.free = ("y", "s")
         return system, tuple(state)
 
-    def contraction(self, period: float) -> float:
-        """exp(-lambda T): what R forgets over a period."""
-        return exp(-self._lam * period)
+    def measures(self, loop: ClosedLoop) -> dict[str, Expression]:
+        """What each component bounds, as functions of the state."""
+        R, R0 = loop.controller_states["R"], float(self.initial_filter)
+        y, s = attitude_measures(loop)
+        root = ca.sqrt(R / R0)
+        return {"K": 1 / R, "y": y, "s": s, "v": y * root, "z": s * root, "r": R}
 
     def bounds(self, low: dict[str, Array], high: dict[str, Array]) -> dict[str, Array]:
         """Take the better of the two bounds of angle and rate; s = inf asks for the second alone."""
         r = np.maximum(low["r"], 0.0)
-        share = self._R0 / r * ROUND_UP
+        share = self.floats.R0 / r * ROUND_UP
         s = high["s"]
         angle = np.where((s < NO_BOUND) | np.isinf(s), s**2, 2.0)
         return {
@@ -104,6 +107,17 @@ class PersistenceSystem(LawComparison):
             "gain_high": ROUND_UP / r,
         }
 
+    def torque_terms(self, c: BoxColumns) -> tuple[list[Interval], Array]:
+        """With kappa' = lambda kappa - g^2 kappa^2 (1 + b0):
+
+        -2 g kappa' + 2 g^3 kappa^2 b0 = -2 g lambda kappa + 2 g^3 kappa^2 (1 + 2 b0).
+        """
+        lam, square = rounded_up(self.decay), 2 * c.g**3 * c.high**2
+        return [
+            (-2 * c.g * lam * c.high, np.zeros_like(c.g)),
+            (np.minimum(square * (1 + 2 * c.b0_low), 0.0), 3 * square),
+        ], c.g * c.high
+
     def choices(self, state: Sequence[float], peak: float) -> Sequence[Modes]:
         """Order the bounds of the angle by their value now; none where r < 0, which no step size mends."""
         _, _, s, _, z, r = state
@@ -112,7 +126,7 @@ class PersistenceSystem(LawComparison):
         angle = "angle" if s * s < ATTITUDE_BOUND_LOST else "blind"
         if peak == 0.0:
             return ((angle, "none"),)
-        sigma = self._R0 * z * z / r
+        sigma = self.floats.R0 * z * z / r
         filters = ["cascade"] if sigma < 2.0 else ["none", "cascade"]
         if angle == "angle":
             filters.insert(0 if s * s < sigma else 1, "angle")
@@ -122,69 +136,69 @@ class PersistenceSystem(LawComparison):
         """Give up s where its bound has reached sqrt 2; keep upper bounds off underflow."""
         K, y, s, v, z, r = state
         s = NO_BOUND if modes[0] == "blind" else s
-        s, z, scale = at_least_tiny(s), at_least_tiny(z), self._lam / self.coupling
+        s, z, scale = at_least_tiny(s), at_least_tiny(z), self.floats.lam / self.coupling
         return (K, drives_attitude(y, s, scale), s, drives_attitude(v, z, scale), z, r)
 
-    def rate(
-        self, gain_square: float, state: Sequence[float], modes: Modes, peak: float, slack: float
-    ) -> tuple[float, ...]:
-        """Floats; each bound pushed outwards by `slack` times its own scale."""
-        K, y, s, v, z, r = state
-        lam, c, R0, G = self._lam, self.coupling, self._R0, gain_square
-        S = s * s
-        pull = 0.5 * G * K * (2.0 - S)
-        K_rate = lam * K - 2.0 * G * K * K - slack * (lam * K + 2.0 * peak * K * K)
-        if modes[0] == "blind":
-            y_rate = s_rate = 0.0
-        else:
-            factor = 1.0 if self.scalable else angle_factor_float(S)
-            y_rate = -pull * y + slack * peak * K * y
-            s_rate = c * y * factor - pull * s + slack * (peak * K * s + 0.1 * c * y)
-        v_rate = -0.5 * lam * v * (1.0 - slack)
-        bend = 1.0 if self.scalable else 1.0 - 0.25 * R0 * K * z * z
-        z_rate = -0.5 * lam * z * (1.0 - slack) + c * v * bend + slack * 0.5 * c * v
-        if modes[1] == "none":
-            r_rate = -lam * r + G * (2.0 - 2.0) - slack * (lam * r)
-        else:
-            sigma = S if modes[1] == "angle" else R0 * z * z / r
-            r_rate = -lam * r + G * (2.0 - sigma) - slack * filter_scale(lam * r, peak)
-        return (K_rate, y_rate, s_rate, v_rate, z_rate, r_rate)
-
-    def conditions(
-        self, gain_square: Bernstein, x: Sequence[Bernstein], dx: Sequence[Bernstein], modes: Modes
-    ) -> Iterator[Bernstein]:
-        """Polynomials >= 0 iff every bound holds; the signs r > 0 and S <= 2 among them."""
+    def slopes(self, G: Any, x: Sequence[Any], modes: Modes, n: Any) -> dict[str, Slope]:
+        """State the module's inequalities."""
         K, y, s, v, z, r = x
-        dK, dy, ds, dv, dz, dr = dx
-        G, lam, c = gain_square, self._lam_exact, self._c
-        yield K
-        yield K * lam - G * K * K * 2 - dK
+        lam, c, R0 = n.lam, n.c, n.R0
+        S = s * s
+        pull = G * K * (2 - S) / 2
+        bend = 1 if self.scalable else 1 - R0 * K * z * z / 4
+        slopes = {
+            "K": lam * K - 2 * G * K * K,
+            "v": -lam * v / 2,
+            "z": -lam * z / 2 + c * v * bend,
+        }
         if modes[0] == "angle":
-            S = s * s
-            room = TWO - S
-            pull = G * K * room * self._half
-            yield room
-            yield s
-            yield dy + pull * y
-            drift = y if self.scalable else y * angle_factor(S)
-            yield ds - drift * c + pull * s
+            drift = c * y if self.scalable else c * y * angle_factor(S)
+            slopes |= {"y": -pull * y, "s": drift - pull * s}
         else:
-            yield dy
-            yield s - ONE * rational(NO_BOUND)
-        yield dv + v * self._half * lam
-        bend = ONE if self.scalable else ONE - K * z * z * self._quarter * self._R0_exact
-        yield dz + z * self._half * lam - v * bend * c
-        yield z
-        yield r
-        yield from self._floor(gain_square, s, z, r, dr, modes[1])
+            slopes["y"] = 0
+        if modes[1] == "none":
+            return slopes | {"r": -lam * r}
+        sigma = S if modes[1] == "angle" else R0 * z * z / r
+        return slopes | {"r": -lam * r + G * (2 - sigma)}
 
-    def _floor(
-        self, G: Bernstein, s: Bernstein, z: Bernstein, r: Bernstein, dr: Bernstein, mode: str
-    ) -> Iterator[Bernstein]:
-        lam = self._lam_exact
-        if mode == "none":
-            yield -dr - r * lam
-        elif mode == "angle":
-            yield G * (TWO - s * s) - r * lam - dr
-        else:  # multiplied by r > 0
-            yield G * (r * 2 - z * z * self._R0_exact) - r * (r * lam + dr)
+    def signs_of(self, x: Sequence[Any], modes: Modes, n: Any) -> Iterator[Any]:
+        """K, z, r >= 0 and 0 <= s <= sqrt 2, or s given up."""
+        del n
+        K, _, s, _, z, r = x
+        yield from (K, z, r)
+        if modes[0] == "angle":
+            yield from (2 - s * s, s)
+        else:
+            yield s - NO_BOUND
+
+    def pushed(
+        self, slopes: Mapping[str, float], state: Sequence[float], modes: Modes, peak: float, slack: float
+    ) -> tuple[float, ...]:
+        """Push each by `slack` times its own scale, r by what keeps it positive after a long off-time."""
+        K, y, s, v, z, r = state
+        lam, c = self.floats.lam, self.coupling
+        K_rate = slopes["K"] - slack * (lam * K + 2.0 * peak * K * K)
+        y_rate = s_rate = 0.0
+        if modes[0] == "angle":
+            y_rate = slopes["y"] + slack * peak * K * y
+            s_rate = slopes["s"] + slack * (peak * K * s + 0.1 * c * y)
+        v_rate = slopes["v"] * (1.0 - slack)
+        z_rate = slopes["z"] + slack * 0.5 * (lam * z + c * v)
+        scale = lam * r if modes[1] == "none" else filter_scale(lam * r, peak)
+        return (K_rate, y_rate, s_rate, v_rate, z_rate, slopes["r"] - slack * scale)
+
+
+@final
+class PersistenceProof(ComparisonProof):
+    """Laws whose equations are the persistence filter's, whatever they are called."""
+
+    name = "persistence-filter"
+
+    def system(self, law: Law, bounds: BodyBounds) -> PersistenceSystem:
+        """Read lambda and R(0) off the law's equations and states."""
+        known = compared_law(law)
+        if known.adaptive:
+            raise NoComparisonError(f"{law_words(law)} has a gain of its own")
+        return PersistenceSystem(
+            decay=known.decay, initial_filter=known.initial_filter, coupling=bounds.coupling
+        )

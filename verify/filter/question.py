@@ -6,7 +6,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
 
+import casadi as ca
+
+from ...models.closed_loop import close_loop
 from ...models.laws import Law
+from ...models.lowering import FIELD, UnknownOperationError, evaluate, walk
 from ...models.norms import LARGEST_COMPONENT, Norm
 from ...models.rigid_body import RigidBody
 from ...models.schedule import Schedule
@@ -73,10 +77,23 @@ class FloorQuestion:
 
 
 def initial_gain_term(law: Law, schedule: Schedule) -> Fraction:
-    """g(0)^2 kappa(0), 1/s, exact: 1/R(0) or k(0) for the laws of the family, zero for others."""
+    """g(0)^2 kappa(0), 1/s, exact, of a law with Omega = w + 2 g^2 kappa bv; zero for others."""
     piece = next(schedule.profile.pieces)
     g = piece.shape[0] if piece.shape else Fraction(0)
-    states = {s.name: s.initial for s in law.controller_states}
-    if "k" in states:
-        return g * g * states["k"]
-    return g * g / states["R"] if states.get("R", Fraction(0)) > 0 else Fraction(0)
+    return g * g * initial_gain(law) if g else Fraction(0)
+
+
+def initial_gain(law: Law) -> Fraction:
+    """kappa(0), 1/s, where the law states a gain of its own states and parameters alone; else zero."""
+    loop = close_loop(law)
+    gain = loop.control.gain
+    if gain is None or ca.depends_on(ca.SX(gain), ca.vertcat(loop.state[:7], loop.time, loop.body)):
+        return Fraction(0)
+    states = [Fraction(0)] * 7 + [state.initial for state in law.controller_states]
+    parameters = [Fraction(value) for value in law.parameters.values()]
+    rest = [[Fraction(0)] * loop.time.numel(), parameters, [Fraction(0)] * loop.body.numel()]
+    try:
+        ((value,),) = evaluate(walk(loop.function("gain", ca.SX(gain))), FIELD, [states, *rest], Fraction)
+    except (UnknownOperationError, ArithmeticError):
+        return Fraction(0)
+    return value

@@ -7,6 +7,8 @@ theorem is about.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
@@ -47,6 +49,24 @@ class ComparedLaw:
     initial_gain: Fraction
 
 
+@contextmanager
+def checked_law(law: Law) -> Iterator[checker.Node]:
+    """Write a law down as the stand-alone checker reads it: {"law": its program, "parameters": its numbers}.
+
+    Raises
+    ------
+    NoComparisonError
+        If the law resets its states or is not algebraic, and whatever `checker.Invalid` is raised within.
+    """
+    if has_resets(law):
+        raise NoComparisonError(f"{law_words(law)} resets its states: no comparison theorem covers a jump")
+    try:
+        form = law_form(close_loop(law))
+        yield checker.Node(as_text({"law": form, "parameters": law.parameters}), "law")
+    except (NotAlgebraicError, checker.Invalid) as error:
+        raise NoComparisonError(f"no comparison theorem covers {law_words(law)}: {error}") from None
+
+
 def compared_law(law: Law) -> ComparedLaw:
     """Return which law of the family this is.
 
@@ -56,23 +76,13 @@ def compared_law(law: Law) -> ComparedLaw:
         If its equations are not those of the family, its states jump, or its initial values or
         parameters are not covered.
     """
-    if has_resets(law):
-        raise NoComparisonError(f"{law_words(law)} resets its states: no comparison theorem covers a jump")
-    loop = close_loop(law)
-    try:
-        form = law_form(loop)
-    except NotAlgebraicError as error:
-        raise NoComparisonError(f"no comparison theorem covers {law_words(law)}: {error}") from None
     gamma = weight = Fraction(0)
-    adaptive = "k" in loop.controller_states
-    try:
-        scaled = checker.read_scaled(
-            checker.Node(as_text({"law": form, "parameters": law.parameters}), "law")
-        )
+    with checked_law(law) as data:
+        scaled = checker.read_scaled(data)
+        adaptive = "k" in scaled.loop.states
         if adaptive:
             gamma, weight = checker.gain_numbers(scaled)
-    except checker.Invalid as error:
-        raise NoComparisonError(f"no comparison theorem covers {law_words(law)}: {error}") from None
+    loop = close_loop(law)
     kappa = loop.controller_states["k"] if adaptive else 1 / loop.controller_states["R"]
     if loop.control.gain is None or not _vanishes(loop, loop.control.gain - kappa):
         raise NoComparisonError(
@@ -83,15 +93,6 @@ def compared_law(law: Law) -> ComparedLaw:
     if start["R"] <= 0 or start.get("k", Fraction(0)) < 0:
         raise NoComparisonError(f"{law_words(law)}: a proof needs R(0) > 0 and k(0) >= 0")
     return ComparedLaw(adaptive, scaled.lam, gamma, weight, start["R"], start.get("k", Fraction(0)))
-
-
-def has_comparison(law: Law) -> bool:
-    """Whether a comparison theorem covers the law, by its equations."""
-    try:
-        compared_law(law)
-    except NoComparisonError:
-        return False
-    return True
 
 
 def follows_filter(loop: ClosedLoop) -> bool:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from .certify import FilterLowerBound, FloorOptions, FloorProof, comparison_system, halved
+from .certify import FilterLowerBound, FloorOptions, FloorProof, halved
 from .convergence import settling
 from .flowpipe import Flowpipe
 
@@ -35,10 +35,9 @@ def tighten_settling_time(
         How hard to try; its defaults without one.
     """
     options, period = options or FloorOptions(), floor.schedule.period
-    system = comparison_system(floor.law, floor.bounds)
-    if period is None or floor.horizon is not None or system is None or len(floor.flowpipes) < 2:
+    if period is None or floor.horizon is not None or len(floor.flowpipes) < 2:
         return floor
-    proof = FloorProof(system, floor.schedule, None, options)
+    proof = FloorProof(floor.system, floor.schedule, None, options)
 
     def time(flowpipe: Flowpipe) -> float:
         return settling(flowpipe, floor, attitude=attitude, rate=rate)

@@ -8,15 +8,14 @@ if they end at most theta times where they began, the n-th period holds with the
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import nextafter
+from math import exp, nextafter
 from typing import final
 
 from ...models.schedule import Schedule
-from ..flow.stepping import CannotProceedError, ComparisonSystem, Step, Stepper
+from ..flow.stepping import CannotProceedError, ComparisonSystem, Modes, Step, Stepper
 
 ATTEMPTS = 4
 """How often the start of a periodic component is moved to its loose side."""
@@ -31,10 +30,17 @@ class PeriodicSystem(ComparisonSystem):
 
     `decaying` groups components that scale down together; components in `free` may end
     anywhere; every other component must return to where it began or beyond, on its safe side.
+    `decay`, 1/s, is how fast those forget where they began (a guess; a filter's lambda).
     """
 
     decaying: tuple[tuple[str, ...], ...]
     free: tuple[str, ...] = ()
+    decay: Fraction = Fraction(0)
+
+    def choices(self, state: Sequence[float], peak: float) -> Sequence[Modes]:
+        """One form of the inequalities, unless the system has several to choose from."""
+        del state, peak
+        return ((),)
 
     def limits(
         self, start: Mapping[str, float], end: Mapping[str, float], ratios: Mapping[str, float]
@@ -43,9 +49,9 @@ class PeriodicSystem(ComparisonSystem):
         del start, end, ratios
         return {}
 
-    @abstractmethod
     def contraction(self, period: float) -> float:
         """Factor by which the periodic components forget their start over one period (a guess)."""
+        return exp(-float(self.decay) * period)
 
 
 @final

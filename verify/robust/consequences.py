@@ -8,7 +8,8 @@ from fractions import Fraction
 from math import asin, ceil, inf, log, nextafter, sqrt
 from typing import final
 
-from ..filter.flowpipe import Box, Flowpipe
+from ..filter.boxes import Box
+from ..filter.flowpipe import Flowpipe
 from .answer import RobustFloor
 from .bodies import BodyBin
 

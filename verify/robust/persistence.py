@@ -36,11 +36,8 @@ from ..exact.rounding import rounded_down, rounded_up
 from ..filter.comparison import (
     ATTITUDE_BOUND_LOST,
     NO_BOUND,
-    ONE,
     ROUND_UP,
-    TWO,
     angle_factor,
-    angle_factor_float,
     at_least_tiny,
     drives_attitude,
     filter_scale,
@@ -50,6 +47,7 @@ from ..filter.sets import InitialSet
 from ..flow.stepping import Modes
 from .constants import CELLS, Constants, cell_end, greatest_n
 
+ONE, TWO = Bernstein.constant(1), Bernstein.constant(2)
 WIDER = (1.03, 1.2, 1.7)
 """Factors by which the bound of S at a step's start is taken for the whole step, in turn."""
 LAST = CELLS - 1
@@ -77,6 +75,7 @@ class RobustPersistenceSystem(LawComparison):
 
     names = ("K", "L", "y", "s", "v", "z", "W", "r")
     signs = (-1, 1, 1, 1, 1, 1, 1, -1)
+    floor_component = "r"
 
     def __init__(
         self,
@@ -207,7 +206,7 @@ class RobustPersistenceSystem(LawComparison):
             room = self._B1 * (1.0 - 0.5 * S) - whirl
             y_rate = max(-k * G * room * y + (k * G) ** 2 * m * s for k in (K, L)) + push
             y_rate += outward * L * (y + L * peak * m * s) + slack * push
-            factor = 1.0 if self.scalable else angle_factor_float(S)
+            factor = 1.0 if self.scalable else angle_factor(S)
             pull = K * G * (1.0 - self._phi) * (1.0 - 0.5 * S)
             s_rate = c * y * factor - pull * s + outward * K * s + slack * 0.1 * c * y
         if modes[0] == ANGLE:
