@@ -10,7 +10,6 @@ import casadi as ca
 import pytest
 from intermit.models.closed_loop import close_loop
 from intermit.models.laws import AdaptiveScaling, Control, ControllerState, PersistenceFilter
-from intermit.study.certify.same_scenario import _same_law
 from intermit.verify import checker
 from intermit.verify.certificates import certificate_text
 from intermit.verify.filter.certify import comparison_system
@@ -193,8 +192,8 @@ def test_a_label_that_names_no_law_is_not_printed(derivative_file):
 
 def test_names_count_for_nothing_between_programs():
     own, adaptive = (law_form(close_loop(law)) for law in (PERSISTENCE, ADAPTIVE))
-    assert _same_law(own, {**own, "name": "adaptive-scaling"})
-    assert not _same_law(own, {**adaptive, "name": "persistence-filter"})
+    assert checker.same_law(own, {**own, "name": "adaptive-scaling"})
+    assert not checker.same_law(own, {**adaptive, "name": "persistence-filter"})
 
 
 def test_an_open_window_at_the_wrap_is_no_counterexample():

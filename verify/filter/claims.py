@@ -275,9 +275,7 @@ def _certificate(facts: FloorFacts, floor: FilterLowerBound) -> Evidence:
     )
     part = floor.system.part
     if part is not None:
-        summary += (
-            f"; they are the law's own, restated by its part of the checker ({part.title})"
-        )
+        summary += f"; they are the law's own, restated by its part of the checker ({part.title})"
     details: dict[str, object] = {"steps": floor.steps}
     if facts.certificate is not None:
         details["certificate"] = facts.certificate

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -18,7 +17,7 @@ from ...models.closed_loop import body_values, close_loop
 from ...models.laws import Law
 from ...models.rigid_body import RigidBody
 from ...models.types import Array
-from ..flow.inequalities import StatedSystem
+from ..flow.inequalities import StatedSystem, outermost
 from .comparison import BodyBounds
 from .law_system import LawSystem
 from .recognise import NoComparisonError, law_words
@@ -112,17 +111,15 @@ def _crossed(
         for modes in system.choices(x, 1.0):
             if any(float(value) < 0 for value in system.signs_of(x, modes, system.floats)):
                 continue
-            stated = system.slopes(G, x, modes, system.floats).get(touching, ())
+            slopes = system.slopes(G, x, modes, system.floats)
+            if touching not in slopes:
+                continue
             sign = system.signs[names.index(touching)]
-            for slope in stated if isinstance(stated, tuple) else (stated,):
-                excess = sign * (true[touching] - _number(slope))
-                if excess > TOLERANCE * (abs(true[touching]) + abs(_number(slope)) + 1e-6):
-                    return (
-                        f"{touching} moves by {true[touching]:.6g} where it touches its bound, "
-                        f"and the inequality allows {_number(slope):.6g}"
-                    )
+            allowed = outermost(slopes[touching], sign)
+            excess = sign * (true[touching] - allowed)
+            if excess > TOLERANCE * (abs(true[touching]) + abs(allowed) + 1e-6):
+                return (
+                    f"{touching} moves by {true[touching]:.6g} where it touches its bound, "
+                    f"and the inequality allows {allowed:.6g}"
+                )
     return ""
-
-
-def _number(value: Any) -> float:
-    return float(value)

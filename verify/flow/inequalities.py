@@ -72,7 +72,7 @@ class StatedSystem(ComparisonSystem):
         slopes = dict(self.slopes(gain_square, state, modes, self.floats))
         for name, value in slopes.items():
             if type(value) is tuple:
-                slopes[name] = max(value) if self.signs[self.names.index(name)] > 0 else min(value)
+                slopes[name] = outermost(value, self.signs[self.names.index(name)])
         return self.pushed(slopes, state, modes, peak, slack)
 
     def conditions(
@@ -85,6 +85,12 @@ class StatedSystem(ComparisonSystem):
             for stated in _each(slopes.get(name, ())):
                 gap = slope - stated if sign > 0 else stated - slope
                 yield gap.numerator if isinstance(gap, Quotient) else gap
+
+
+def outermost(slope: Slope, sign: int) -> float:
+    """Of slopes that must all be safe, in floats, the one that asks most of the bound."""
+    values = _each(slope)
+    return float(max(values) if sign > 0 else min(values))
 
 
 def _each(slope: Slope) -> tuple[Any, ...]:
