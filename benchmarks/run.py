@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 HERE = Path(__file__).parent
-ORDER = ("samples.py", "memory.py", "trajectories.py", "optimum.py", "startup.py", "growth.py")
+ORDER = ("samples.py", "memory.py", "trajectories.py", "optimum.py", "startup.py", "growth.py", "moved.py")
 
 
 def main() -> int:
