@@ -171,7 +171,7 @@ class Law(ABC):
         """Return ways in which the law can be proved, of its own; none by default.
 
         Each is an `intermit.verify.filter.proofs.ComparisonProof`. What it says is checked against the law's
-        equations, and its certificates by the stand-alone checker (docs/own-proof.md).
+        equations, and its certificates by the stand-alone checker (docs/how-to/add-a-law.md).
         """
         return ()
 

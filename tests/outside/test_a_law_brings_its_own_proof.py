@@ -5,6 +5,7 @@ proves nothing.
 """
 
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -231,3 +232,17 @@ def test_it_is_reported(folder):
     record = json.loads(next(out.rglob("results.json")).read_text())
     (case,) = record["sections"]["cases"]
     assert [p["unit"] for p in case["parameters"]] == ["1/s", "1/s"]
+
+
+def test_the_page_shows_these_files():
+    page = (Path(__file__).parents[2] / "docs" / "how-to" / "add-a-law.md").read_text(encoding="utf-8")
+    blocks = re.findall(r"^```py\n(.*?)^```", page, flags=re.DOTALL | re.MULTILINE)
+    assert len(blocks) > 8
+    both, shown = flat(LAW.read_text() + PART.read_text()), [flat(block) for block in blocks]
+    assert [block for block in shown if block not in both] == []
+    assert sum(map(len, shown)) > 0.7 * len(both), "all that matters is shown"
+
+
+def flat(text):
+    """Lines without indentation: a method stands on the page without its class; the formatter joins lines."""
+    return re.sub(r"[\s,]+", " ", text)

@@ -119,8 +119,8 @@ def _no_system_step(law: Law) -> str:
     if own_proofs(law):
         return f"mend the proof that {type(law).__name__}.proofs returns, or its part of the checker"
     return (
-        f"return a comparison system from {type(law).__name__}.proofs (docs/own-proof.md), or write the law "
-        "as docs/theory-floor.md does: + - * / alone, no limit on the torque in it"
+        f"return a comparison system from {type(law).__name__}.proofs (docs/how-to/add-a-law.md), or write "
+        "the law as docs/theory-floor.md does: + - * / alone, no limit on the torque in it"
     )
 
 
