@@ -15,6 +15,7 @@ from typing import Any, final
 
 import numpy as np
 
+from .apart import apart
 from .types import Array
 
 ExactMatrix = tuple[tuple[Fraction, Fraction, Fraction], ...]
@@ -32,9 +33,10 @@ class RigidBody:
         for i in range(3):
             for j in range(i):
                 if J[i][j] != J[j][i]:
+                    lower, upper = apart(J[i][j], J[j][i])
                     raise ValueError(
-                        f"inertia must be symmetric: entry ({i + 1},{j + 1}) is {float(J[i][j]):g}, "
-                        f"entry ({j + 1},{i + 1}) is {float(J[j][i]):g}"
+                        f"inertia must be symmetric: entry ({i + 1},{j + 1}) is {lower}, "
+                        f"entry ({j + 1},{i + 1}) is {upper}"
                     )
         if not all(minor > 0 for minor in leading_minors(J)):
             raise ValueError("inertia must be positive definite")

@@ -9,6 +9,7 @@ from typing import final
 
 import numpy as np
 
+from ..models.apart import apart
 from ..models.attitude import conjugate, quaternion_product
 from ..models.rigid_body import RigidBody
 from ..models.types import Array
@@ -149,7 +150,7 @@ def attitude(table: AttitudeTable, document: Document, key: str) -> tuple[float,
             norm = math.sqrt(square)
             raise ScenarioError(
                 document.where(f"{key}.quaternion"),
-                f"must be a unit quaternion, scalar first, received norm {norm:.7g}",
+                f"must be a unit quaternion, scalar first, received norm {apart(norm, 1, digits=7)[0]}",
             )
         norm = math.sqrt(square)
         return tuple(float(x) / norm for x in table.quaternion)
@@ -205,10 +206,10 @@ def _check_inside(
     """Refuse a state outside its set; within a window the weighted rate depends on the law: not checked."""
     allowance = float(ANGLE_ALLOWANCE)
     if state.angle_deg > float(bounds.max_angle_deg) + allowance:
+        own, most = apart(state.angle_deg, bounds.max_angle_deg)
         raise ScenarioError(
             document.where("initial_set.max_angle_deg"),
-            f"the initial state's error angle, {state.angle_deg:.6g} deg, lies outside "
-            f"{float(bounds.max_angle_deg):g} deg",
+            f"the initial state's error angle, {own} deg, lies outside {most} deg",
         )
     rate = state.exact_rate
     square = sum((x * x for x in rate), Fraction(0))
@@ -218,18 +219,18 @@ def _check_inside(
             "required (or max_weighted_rate) since the initial state turns, but missing",
         )
     if bounds.max_rate is not None and square > bounds.max_rate**2:
+        own, most = apart(math.sqrt(square), bounds.max_rate)
         raise ScenarioError(
             document.where("initial_set.max_rate"),
-            f"the initial state's rate, {math.sqrt(square):.6g} rad/s, lies outside "
-            f"{float(bounds.max_rate):g} rad/s",
+            f"the initial state's rate, {own} rad/s, lies outside {most} rad/s",
         )
     if bounds.max_weighted_rate is None or starts_in_window:
         return
     J = body.exact_inertia
     weighted = sum((rate[i] * J[i][j] * rate[j] for i in range(3) for j in range(3)), Fraction(0))
     if weighted > bounds.max_weighted_rate**2:
+        own, most = apart(math.sqrt(weighted), bounds.max_weighted_rate)
         raise ScenarioError(
             document.where("initial_set.max_weighted_rate"),
-            f"the initial state's sqrt(w' J w), {math.sqrt(weighted):.6g} sqrt(kg m^2)/s, lies outside "
-            f"{float(bounds.max_weighted_rate):g}",
+            f"the initial state's sqrt(w' J w), {own} sqrt(kg m^2)/s, lies outside {most}",
         )

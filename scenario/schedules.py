@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
 
+from ..models.apart import apart
 from ..models.schedule import Hermite, Ramps, Schedule, Shape, Window, build_schedule, starting_at
 from . import thrust
 from .csv_tables import Column, read_rows
@@ -196,8 +197,10 @@ def _windows(
             document.where("schedule.count"), f"must be at most {MAX_COUNT}, received {count}"
         )
     if (on if on < period and not clock.start_is_given else 0) + on_time > period:
-        both = f"on + on_time = {float(on + on_time):g} s" if on else f"on_time = {float(on_time):g} s"
-        raise ScenarioError(key, f"{both} goes beyond the period of {float(period):g} s")
+        end, most = apart(on + on_time, period)
+        raise ScenarioError(
+            key, f"{'on + on_time' if on else 'on_time'} = {end} s goes beyond the period of {most} s"
+        )
     windows = [Window(k * period + on, k * period + on + on_time) for k in range(count)]
     many = "endless" if table.count is None else f"{count} windows"
     return windows, lambda _: key, f"period {float(period):g} s, on {float(on_time):g} s, {many}", ()
@@ -240,25 +243,21 @@ def _check_order(
                 f"opens at {float(window.on):g} s: times start at 0 s (or at initial.time, if it is given)",
             )
         if window.off <= window.on:
-            raise ScenarioError(
-                locate(i),
-                f"closes ({number_text(window.off)} s) before it opens ({number_text(window.on)} s)",
-            )
+            off, on = apart(window.off, window.on)
+            raise ScenarioError(locate(i), f"closes ({off} s) before it opens ({on} s)")
         if i and window.on < windows[i - 1].off:
+            on, off = apart(window.on, windows[i - 1].off)
             raise ScenarioError(
                 locate(i),
-                f"opens ({number_text(window.on)} s) before the window above it closes "
-                f"({number_text(windows[i - 1].off)} s): windows must be in order and not overlap",
+                f"opens ({on} s) before the window above it closes ({off} s): windows must be in order and "
+                "not overlap",
             )
         begins = min(clock.start, windows[0].on)
         if period is not None and window.off > begins + period:
             late = window.on >= begins + period
             first = ": the first period begins with the run (give initial.time)" if late else ""
-            raise ScenarioError(
-                locate(i),
-                f"closes ({number_text(window.off)} s) after the period ends "
-                f"({number_text(begins + period)} s){first}",
-            )
+            off, end = apart(window.off, begins + period)
+            raise ScenarioError(locate(i), f"closes ({off} s) after the period ends ({end} s){first}")
 
 
 def _shape(name: str, table: ScheduleTable, document: Document) -> Shape:

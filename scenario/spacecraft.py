@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..models.apart import apart
 from ..models.rigid_body import ExactMatrix, RigidBody, leading_minors
 from .document import Document
 from .errors import ScenarioError
@@ -39,7 +40,8 @@ def build(
         raise ScenarioError(
             key,
             f"principal inertias from {least:.6g} to {greatest:.6g} kg m^2: their ratio is "
-            f"{greatest / least:.3g}, and beyond {MAX_RATIO:g} no motion can be followed in double precision",
+            f"{apart(greatest / least, MAX_RATIO)[0]}, and beyond {MAX_RATIO:g} no motion can be followed in "
+            "double precision",
         )
     warnings: tuple[str, ...] = ()
     if not body.satisfies_triangle_inequality:

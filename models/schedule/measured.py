@@ -16,6 +16,7 @@ from itertools import pairwise
 from math import nextafter
 from typing import final
 
+from ..apart import apart
 from .piecewise import Piece
 from .polynomial import Coefficients, polynomial
 from .profiles import contiguous
@@ -114,7 +115,8 @@ def _check(samples: Sequence[ThrustSample]) -> None:
         raise ValueError(f"the first sample is at {float(samples[0].time):g} s: times start at 0 s")
     for a, b in pairwise(samples):
         if b.time <= a.time:
-            raise ValueError(f"a sample at {float(b.time):g} s follows one at {float(a.time):g} s")
+            later, earlier = apart(b.time, a.time)
+            raise ValueError(f"a sample at {later} s follows one at {earlier} s")
     if any(sample.gain < 0 for sample in samples):
         raise ValueError("thrust must not be negative")
     if all(sample.gain == 0 for sample in samples):

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
 
+from ..apart import apart
 from .piecewise import Piece, PiecewisePolynomial
 from .polynomial import ZERO, Coefficients, polynomial
 from .schedule import Schedule, Window
@@ -116,21 +117,18 @@ def check_windows(windows: Sequence[Window], period: Fraction | None) -> None:
         if window.on < 0:
             raise ValueError(f"schedule window {number} opens at {float(window.on):g} s: times start at 0 s")
         if window.off <= window.on:
-            raise ValueError(
-                f"schedule window {number} closes ({float(window.off):g} s) "
-                f"before it opens ({float(window.on):g} s)"
-            )
+            off, on = apart(window.off, window.on)
+            raise ValueError(f"schedule window {number} closes ({off} s) before it opens ({on} s)")
         if previous is not None and window.on < previous.off:
+            off, on = apart(previous.off, window.on)
             raise ValueError(
-                f"schedule window {number - 1} ends ({float(previous.off):g} s) after window {number} "
-                f"begins ({float(window.on):g} s): windows must not overlap"
+                f"schedule window {number - 1} ends ({off} s) after window {number} begins ({on} s): "
+                "windows must not overlap"
             )
         previous = window
     if period is not None and windows[-1].off > period:
-        raise ValueError(
-            f"schedule window {len(windows)} ends ({float(windows[-1].off):g} s) "
-            f"after the period ({float(period):g} s)"
-        )
+        off, end = apart(windows[-1].off, period)
+        raise ValueError(f"schedule window {len(windows)} ends ({off} s) after the period ({end} s)")
 
 
 def contiguous(pieces: Sequence[Piece], period: Fraction | None) -> PiecewisePolynomial:
@@ -139,9 +137,10 @@ def contiguous(pieces: Sequence[Piece], period: Fraction | None) -> PiecewisePol
     shapes: list[Coefficients] = []
     for piece in pieces:
         if piece.start < knots[-1]:
+            start, until = apart(piece.start, knots[-1])
             raise ValueError(
-                f"g of one window still acts at {float(piece.start):g} s when the next begins: "
-                f"windows must leave room for it (until {float(knots[-1]):g} s)"
+                f"g of one window still acts at {start} s when the next begins: windows must leave room "
+                f"for it (until {until} s)"
             )
         if piece.start > knots[-1]:
             knots.append(piece.start)
@@ -150,9 +149,8 @@ def contiguous(pieces: Sequence[Piece], period: Fraction | None) -> PiecewisePol
         shapes.append(piece.shape)
     if period is not None:
         if knots[-1] > period:
-            raise ValueError(
-                f"g reaches zero at {float(knots[-1]):g} s, after the period {float(period):g} s"
-            )
+            last, end = apart(knots[-1], period)
+            raise ValueError(f"g reaches zero at {last} s, after the period {end} s")
         if knots[-1] < period:
             knots.append(period)
             shapes.append(ZERO)

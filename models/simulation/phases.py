@@ -15,6 +15,7 @@ from typing import Any, final
 import casadi as ca
 import numpy as np
 
+from ..apart import apart
 from ..closed_loop import ClosedLoop
 from ..laws import Law
 from ..schedule import Schedule
@@ -63,7 +64,8 @@ def phases_between(schedule: Schedule, law: Law, start: Fraction, stop: Fraction
         If stop <= start.
     """
     if stop <= start:
-        raise ValueError(f"a run must end after it starts: start {float(start):g} s, end {float(stop):g} s")
+        began, ended = apart(start, stop)
+        raise ValueError(f"a run must end after it starts: start {began} s, end {ended} s")
     instants = sorted(set(law.reset_instants(schedule, start, stop)))
     result: list[Phase] = []
     for piece in schedule.pieces_between(start, stop):

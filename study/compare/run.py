@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, final
 import numpy as np
 
 from ...errors import InputError
+from ...models.apart import apart
 from ...models.norms import EUCLIDEAN, LARGEST_COMPONENT, NORMS
 from ...models.simulation import SimulationError
 from ...models.types import Array
@@ -191,8 +192,11 @@ def _terms(scenario: Scenario, run: LawRun, goal: Goal) -> dict[str, EqualTerms]
 
 def _unsettled(run: LawRun) -> str:
     """How far a law is from settled at its horizon."""
-    attitude, rate = run.end
-    there = f"|bv| = {attitude:.3g}, |w| = {rate:.3g} rad/s there"
+    attitude, rate = (
+        apart(value, most, digits=3)[0]
+        for value, most in zip(run.end, (run.task.attitude_tolerance, run.task.rate_tolerance), strict=True)
+    )
+    there = f"|bv| = {attitude}, |w| = {rate} rad/s there"
     return f"does not settle by {float(run.task.horizon):g} s: {there}"
 
 

@@ -8,6 +8,7 @@ from fractions import Fraction
 
 import numpy as np
 
+from ...models.apart import apart
 from ...models.laws import Law
 from ...models.norms import EUCLIDEAN, LARGEST_COMPONENT, NORMS, Norm
 from ...optim.tuning.conditions import CertifiedConvergence
@@ -64,9 +65,10 @@ def run_tuning(
 def _require_time(scenario: Scenario, settle: Fraction) -> None:
     """Refuse a settling time that the run does not reach."""
     if settle > scenario.horizon:
+        late, end = apart(settle, scenario.horizon)
         raise ScenarioError(
             f"{scenario.path.name}: tune.settle",
-            f"{float(settle):g} s lie beyond the run, which ends at {float(scenario.horizon):g} s: give a "
+            f"{late} s lie beyond the run, which ends at {end} s: give a "
             "longer simulation.horizon or an earlier settling time",
         )
 

@@ -12,6 +12,7 @@ from fractions import Fraction
 from math import degrees, isfinite
 from typing import final
 
+from ...models.apart import apart
 from ...models.norms import Norm
 from ..certificates.format import Certificate
 from ..exact.rounding import digits_above, digits_below
@@ -183,7 +184,7 @@ def torque_claim(
     if largest is not None:
         value, whose = largest
         word = "exceeds it too" if value > limit else "does not"
-        reason += f"; the largest torque {whose}, {value:.4g} N m, {word}"
+        reason += f"; the largest torque {whose}, {apart(value, limit, digits=4)[0]} N m, {word}"
         if value > 0:
             reason += f" (the bound is {bound.applied / value:.2g} times it)"
     gains = ", ".join(floor.law.parameters)

@@ -9,6 +9,7 @@ from typing import final
 
 import numpy as np
 
+from ....models.apart import apart
 from ....models.schedule.polynomial import antiderivative, evaluate
 from ...problem import TransferProblem
 
@@ -128,18 +129,19 @@ def explain(problem: TransferProblem, limit: float | None = None) -> Explanation
     momentum = float(np.linalg.norm(problem.start_momentum))
     absorb, travel = absorption_peak(problem), travel_peak(problem)
     if absorb > limit:
+        needed, most = apart(absorb, limit, digits=3)
         return Explanation(
             f"the windows before tf = {tf:g} s (total {float(total):.4g} s) cannot absorb the start's "
-            f"momentum of {momentum:.4g} N m s: needs {absorb:.3g} {unit}, "
-            f"limit {limit:.3g} {unit}",
+            f"momentum of {momentum:.4g} N m s: needs {needed} {unit}, limit {most} {unit}",
             "allow more torque, more window time or a later tf, or start with less rate",
             impossible=False,
         )
     if travel > limit:
+        needed, most = apart(travel, limit, digits=3)
         return Explanation(
             f"the windows before tf = {tf:g} s (total {float(total):.4g} s) are too short to turn "
-            f"{math.degrees(problem.angle):.4g} deg to the tolerance: needs at least {travel:.3g} {unit}, "
-            f"limit {limit:.3g} {unit}",
+            f"{math.degrees(problem.angle):.4g} deg to the tolerance: needs at least {needed} {unit}, "
+            f"limit {most} {unit}",
             "allow more torque, more window time, a later tf or a larger tolerance",
             impossible=False,
         )
