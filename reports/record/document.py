@@ -16,6 +16,8 @@ from .tables import CollectionEntry
 
 FORMAT = "intermit-record"
 VERSION = 1
+MAX_PLACE = 120
+"""Characters of a place that a message shows."""
 
 
 class Provenance(Part):
@@ -119,4 +121,4 @@ def _place(loc: tuple[int | str, ...], value: object) -> str:
             place, value = f"{place}[{step}]", value[step]
         elif isinstance(step, str) and isinstance(value, Mapping) and step in value:
             place, value = f"{place}.{step}", value[step]
-    return place
+    return place if len(place) <= MAX_PLACE else f"{place[:MAX_PLACE]}..."
