@@ -70,9 +70,7 @@ def test_the_wheel_holds_every_file_and_nothing_else(checkout: Path, wheel: Path
 
 
 @pytest.mark.slow
-def test_the_readmes_commands_run_from_the_wheel_in_an_empty_folder(
-    checkout: Path, wheel: Path, tmp_path: Path
-) -> None:
+def test_the_readmes_commands_run_from_the_wheel(checkout: Path, wheel: Path, tmp_path: Path) -> None:
     target, empty = tmp_path / "site", tmp_path / "empty"
     with zipfile.ZipFile(wheel) as archive:
         archive.extractall(target)

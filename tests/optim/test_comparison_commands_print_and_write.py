@@ -143,7 +143,7 @@ def test_sweep_reports_each_case(scenario, tmp_path):
     assert rows[0]["floor"]["rigorous"]
 
 
-def test_a_sweep_over_more_windows_than_can_be_solved_is_refused(scenario, capsys):
+def test_a_sweep_over_too_many_windows_is_refused(scenario, capsys):
     scenario.write_text(SMALL + "[optimum]\nfinal_time = 1e12\n")
     assert run(["sweep", str(scenario)]) == 2
     assert "125000000000 windows open before 1e+12 s" in capsys.readouterr().err

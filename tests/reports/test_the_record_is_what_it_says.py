@@ -206,14 +206,14 @@ def written_as(document: dict, folder: Path) -> Path:
     return path
 
 
-def test_a_record_of_the_release_before_opens_and_is_written_as_it_was(tmp_path: Path) -> None:
+def test_the_release_befores_records_open_and_are_kept(tmp_path: Path) -> None:
     path = written_as(EARLIER, tmp_path)
     record = read_record(path)
     assert record.sections.cases[0].parameters[0].high == float("inf")
     assert record.to_json() == path.read_text()
 
 
-def test_one_that_does_not_fit_is_refused_with_its_version_and_the_remedy(tmp_path: Path) -> None:
+def test_what_does_not_fit_names_its_version_and_the_remedy(tmp_path: Path) -> None:
     unknown = copy.deepcopy(EARLIER)
     unknown["sections"]["appendix"] = {}  # type: ignore[index]
     with pytest.raises(RecordError) as refused:

@@ -43,7 +43,7 @@ def test_each_unit_stands_in_its_field():
         ("bound-angle", "attitude", "rad"),
     ],
 )
-def test_certified_bounds_over_time_have_a_figure_with_their_unit(record, key, chapter, unit):
+def test_bounds_over_time_have_a_figure_with_their_unit(record, key, chapter, unit):
     (found,) = (c for c in chapters(record) if c.key == chapter)
     (chart,) = (c for c in charts_of([found]) if c.key == key)
     assert chart.y.unit == unit

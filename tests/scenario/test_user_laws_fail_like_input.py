@@ -145,7 +145,7 @@ def test_a_press_of_ctrl_c_within_a_law_is_an_interrupt(attempt):
     assert "interrupted" in said.err
 
 
-def test_a_law_that_is_no_number_at_its_start_is_named_with_the_state(attempt):
+def test_a_law_without_a_number_at_its_start_is_named(attempt):
     """1 at the target, no number beyond 51 deg: the run starts at 60 deg."""
     root = 'return Control(-ca.sqrt(plant.b0 - 0.9) * plant.bv - p["kd"] * plant.w)'
     code, said = attempt(root, command=("check", "--no-search", "--no-margins"))

@@ -117,7 +117,7 @@ def test_g_as_printed_acts_in_the_fall_uncounted(
     assert (corrected["verdict"], corrected["counted"]) == ("PROVED", True)
 
 
-def test_a_claim_over_a_tolerance_says_that_the_law_knows_the_inertia(write_scenario: Write) -> None:
+def test_a_tolerance_claim_says_the_law_knows_the_inertia(write_scenario: Write) -> None:
     scenario = load_scenario(write_scenario())
     law = scenario.laws[0].build()
     rows = tuple(tuple(Fraction(1, 100) for _ in range(3)) for _ in range(3))

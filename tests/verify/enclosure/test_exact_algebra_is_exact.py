@@ -47,7 +47,7 @@ def test_inverses_and_factors_give_the_matrix_back():
         matrix.inverse([[F(1), F(2)], [F(2), F(4)]])
 
 
-def test_a_flat_body_at_the_triangle_inequality_is_told_from_one_beyond():
+def test_a_flat_body_is_told_from_one_beyond_flat():
     assert RigidBody.from_rows([[1, 0, 0], [0, 1, 0], [0, 0, 2]]).satisfies_triangle_inequality
     assert not RigidBody.from_rows(
         [[1, 0, 0], [0, 1, 0], [0, 0, "2.000000000000000000001"]]

@@ -75,7 +75,7 @@ def test_a_filter_that_forgets_within_a_gap_is_undecided(decay):
 @pytest.mark.parametrize(
     ("law", "words"), [(PERSISTENCE, "one over what is left"), (ADAPTIVE, "the gain k learns by it")]
 )
-def test_a_late_first_window_is_the_reason_and_the_start_the_remedy(law, words):
+def test_a_late_first_window_is_named_with_its_remedy(law, words):
     late = build_schedule([Window(F(1000), F(1003))], Hermite())
     claim = by_key(answer(replace(QUESTION, law=law, schedule=late)))["filter.floor"]
     assert claim.verdict is Verdict.UNDECIDED

@@ -22,7 +22,7 @@ def test_no_state_contradicts_them(law, body):
 
 
 @pytest.mark.parametrize(("law", "name"), [(law, name) for law, names in TIGHT.items() for name in names])
-def test_an_inequality_that_asks_three_percent_less_is_contradicted(law, name):
+def test_asking_three_percent_less_is_contradicted(law, name):
     bounds = BodyBounds.of(J1)
     system = system_of(LAWS[law], bounds)
     stated, sign = system.slopes, system.signs[system.names.index(name)]
