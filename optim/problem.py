@@ -17,6 +17,7 @@ from typing import final
 
 import numpy as np
 
+from ..models.mission import Mission
 from ..models.norms import EUCLIDEAN, Norm
 from ..models.rigid_body import RigidBody
 from ..models.schedule import PiecewisePolynomial, Schedule
@@ -139,6 +140,43 @@ class TransferProblem:
             rate=(w[0], w[1], w[2]),
             norm=norm or EUCLIDEAN,
             terminal=terminal or Terminal(),
+        )
+
+    @classmethod
+    def of(
+        cls,
+        mission: Mission,
+        norm: Norm,
+        *,
+        horizon: Fraction | None = None,
+        terminal: Terminal | None = None,
+        profile: WindowProfile = WindowProfile.FULL,
+    ) -> TransferProblem:
+        """State a mission's transfer for any controller whatever, on the nominal body.
+
+        Parameters
+        ----------
+        mission : Mission
+            Body, schedule and start.
+        norm : Norm
+            How torque is measured.
+        horizon : Fraction, optional
+            Transfer time, s; the mission's horizon without one.
+        terminal : Terminal, optional
+            How near to rest at the target it must end; the mission's tolerances without one.
+        profile : WindowProfile
+            What limits the torque inside a window.
+        """
+        settled = mission.tolerance
+        return cls.through(
+            mission.schedule,
+            body=mission.body,
+            horizon=mission.horizon if horizon is None else horizon,
+            attitude=mission.start.exact_quaternion,
+            rate=mission.start.exact_rate,
+            norm=norm,
+            terminal=Terminal(settled.attitude, settled.rate) if terminal is None else terminal,
+            profile=profile,
         )
 
     @property

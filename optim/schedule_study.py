@@ -9,14 +9,15 @@ from fractions import Fraction
 from typing import final
 
 from ..models.laws import Law
+from ..models.mission import Mission
 from ..models.norms import Norm
 from ..models.schedule import Hermite, Shape, Window, build_schedule
 from ..models.simulation import SimulationError
-from .comparison.measure import Task, run_law
+from .comparison.measure import run_law
 from .tuning.front import BestPossible, best_possible
 
-FloorOf = Callable[[Law, Task], float | None]
-"""Certified lower bound on the filter state R of a law on a task, s; None where there is none."""
+FloorOf = Callable[[Law, Mission], float | None]
+"""Certified lower bound on the filter state R of a law on a mission, s; None where there is none."""
 
 
 @final
@@ -28,9 +29,9 @@ class ScheduleCase:
     ----------
     period, on_time : s
     floor : certified lower bound on R, s, or None
-    settling : of the law, s, or None if it does not settle within the task's horizon
+    settling : of the law, s, or None if it does not settle within the mission's horizon
     law_peak : peak applied torque of the law, N m, or None if its run failed
-    best : optimum and bound for the task's time
+    best : optimum and bound for the mission's time
     """
 
     period: Fraction
@@ -60,7 +61,7 @@ class ScheduleFamily:
     opening: Fraction = Fraction(1, 100)
     shape: Shape = field(default_factory=Hermite)
 
-    def task(self, task: Task, period: Fraction, on_time: Fraction) -> Task:
+    def applied_to(self, mission: Mission, period: Fraction, on_time: Fraction) -> Mission:
         """The same work through another schedule.
 
         Raises
@@ -69,12 +70,12 @@ class ScheduleFamily:
             If the window does not fit in the period.
         """
         window = Window(self.opening, self.opening + on_time)
-        return replace(task, schedule=build_schedule([window], self.shape, period=period))
+        return replace(mission, schedule=build_schedule([window], self.shape, period=period))
 
 
 def study_schedules(
     law: Law,
-    task: Task,
+    mission: Mission,
     periods: Sequence[Fraction],
     duty_cycles: Sequence[Fraction],
     *,
@@ -90,7 +91,7 @@ def study_schedules(
     ----------
     law : Law
         The law that is run through every schedule.
-    task : Task
+    mission : Mission
         Body, start and tolerances; its own schedule is replaced by each case's.
     periods : Sequence[Fraction]
         Periods, s, each > 0.
@@ -109,7 +110,7 @@ def study_schedules(
     """
     family = family if family is not None else ScheduleFamily()
     jobs = [
-        (law, family.task(task, period, duty * period), period, duty * period, time, norm, floor)
+        (law, family.applied_to(mission, period, duty * period), period, duty * period, time, norm, floor)
         for period in periods
         for duty in duty_cycles
     ]
@@ -119,16 +120,23 @@ def study_schedules(
 
 
 def study_case(
-    law: Law, task: Task, period: Fraction, on_time: Fraction, time: Fraction, norm: Norm, floor: FloorOf
+    law: Law,
+    mission: Mission,
+    period: Fraction,
+    on_time: Fraction,
+    time: Fraction,
+    norm: Norm,
+    floor: FloorOf,
 ) -> ScheduleCase:
     """One case of the study."""
     settling, peak = None, None
     try:
-        run = run_law(law.name, law, task)
+        run = run_law(law.name, law, mission)
         settling, peak = run.figures.settling, run.peak(norm)
     except SimulationError:
         pass  # the case then has no run: its peak and settling stay None, and are shown so
-    return ScheduleCase(period, on_time, floor(law, task), settling, peak, best_possible(task, time, norm))
+    best = best_possible(mission, time, norm)
+    return ScheduleCase(period, on_time, floor(law, mission), settling, peak, best)
 
 
 @final
@@ -154,7 +162,7 @@ class LeastOnTime:
 
 def least_on_time(
     law: Law,
-    task: Task,
+    mission: Mission,
     period: Fraction,
     *,
     torque_limit: Fraction,
@@ -173,7 +181,7 @@ def least_on_time(
     low, high = Fraction(0), period - family.opening
 
     def verdict(on_time: Fraction) -> tuple[str, float | None, float | None]:
-        candidate = family.task(task, period, on_time)
+        candidate = family.applied_to(mission, period, on_time)
         bottom = floor(law, candidate)
         if bottom is None or bottom <= 0:
             return "no certified floor of R", bottom, None

@@ -1,8 +1,8 @@
 """The file a user writes: read, checked and built into objects of `models`."""
 
+from ..models.mission import InitialSet, InitialState
 from .errors import ScenarioError
 from .extra_law import law_from_words, with_laws
-from .initial import InitialSet, InitialState
 from .laws import LawChoice
 from .scenario import Scenario, load_scenario
 from .schedules import ScheduleChoice

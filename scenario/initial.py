@@ -3,75 +3,20 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from fractions import Fraction
-from typing import final
 
 import numpy as np
 
 from ..models.apart import apart
 from ..models.attitude import conjugate, quaternion_product
+from ..models.mission import ANGLE_ALLOWANCE, InitialSet, InitialState
 from ..models.rigid_body import RigidBody
-from ..models.types import Array
 from .document import Document
 from .errors import ScenarioError
-from .schema import AttitudeTable, InitialSetTable, InitialTable, ScenarioFile
+from .schema import AttitudeTable, InitialTable, ScenarioFile
 
 UNIT_TOLERANCE = Fraction(1, 10**6)
 """How far a quaternion's squared norm may be from 1; within it, it is normalised."""
-ANGLE_ALLOWANCE = Fraction(1, 10**9)
-"""Added to a float angle, deg, so that the set certainly holds the state (rounding is 1e-13)."""
-
-
-@final
-@dataclass(frozen=True)
-class InitialState:
-    """The state at t = 0.
-
-    Attributes
-    ----------
-    attitude : error quaternion from the target, scalar first, unit, (4,)
-    exact_rate : body rate, rad/s, exact, (3,)
-    representative : whether it was chosen on the edge of the initial set, not given by the user
-    """
-
-    attitude: tuple[float, float, float, float]
-    exact_rate: tuple[Fraction, Fraction, Fraction]
-    representative: bool = False
-
-    @property
-    def quaternion(self) -> Array:
-        """The error quaternion as an array, scalar first, (4,)."""
-        return np.array(self.attitude)
-
-    @property
-    def rate(self) -> Array:
-        """Body rate, rad/s, (3,)."""
-        return np.array([float(x) for x in self.exact_rate])
-
-    @property
-    def angle_deg(self) -> float:
-        """Error angle 2 acos b0 in [0, 360], deg (over 180 it unwinds the long way)."""
-        return math.degrees(2 * math.atan2(math.hypot(*self.attitude[1:]), self.attitude[0]))
-
-
-@final
-@dataclass(frozen=True)
-class InitialSet:
-    """All states with error angle <= `max_angle_deg` (2 acos b0, deg) and a bounded rate.
-
-    Attributes
-    ----------
-    max_rate : bound on |w|, rad/s, or None
-    max_weighted_rate : bound on sqrt(Omega' J Omega), sqrt(kg m^2)/s, or None
-        Where both are None the set is at rest; where both are given, both hold.
-    from_state : whether it was derived from the initial state, which it then certainly holds
-    """
-
-    max_angle_deg: Fraction
-    max_rate: Fraction | None
-    max_weighted_rate: Fraction | None
-    from_state: bool = False
 
 
 def build(
@@ -93,14 +38,14 @@ def build(
         state = _state(given, target, document)
     else:
         assert file.initial_set is not None
-        state = _representative(file.initial_set)
+        state = InitialSet(file.initial_set.max_angle_deg).representative
     if file.initial_set is not None:
         table = file.initial_set
         bounds = InitialSet(table.max_angle_deg, table.max_rate, table.max_weighted_rate)
         if given is not None:
             _check_inside(state, bounds, document, body, starts_in_window=starts_in_window)
     else:
-        bounds = _around(state)
+        bounds = InitialSet.around(state)
     return state, bounds
 
 
@@ -179,25 +124,6 @@ def _relative(target: tuple[float, ...], q: tuple[float, ...]) -> tuple[float, .
     """conj(target) q: the attitude as seen from the target."""
     product = np.array(quaternion_product(conjugate(target), q))
     return tuple(float(x) for x in product / np.linalg.norm(product))
-
-
-def _representative(table: InitialSetTable) -> InitialState:
-    """Return the largest angle of the set, about (1, 1, 1), at rest."""
-    half = math.radians(float(table.max_angle_deg)) / 2
-    v = math.sin(half) / math.sqrt(3)
-    zero = Fraction(0)
-    return InitialState((math.cos(half), v, v, v), (zero, zero, zero), representative=True)
-
-
-def _around(state: InitialState) -> InitialSet:
-    square = sum((x * x for x in state.exact_rate), Fraction(0))
-    rate = Fraction(0)
-    if square:
-        rate = Fraction(math.nextafter(math.sqrt(square), math.inf))
-        while rate * rate < square:
-            rate = Fraction(math.nextafter(float(rate), math.inf))
-    angle = min(Fraction(state.angle_deg) + ANGLE_ALLOWANCE, Fraction(360))
-    return InitialSet(angle, rate, None, from_state=True)
 
 
 def _check_inside(

@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import Any, final
 
 from ..models.linear import LinearPlant
+from ..models.mission import ANGLE_ALLOWANCE, InitialSet, InitialState, Mission, Tolerance, TorqueLimit
+from ..models.norms import NORMS
 from ..models.rigid_body import ExactMatrix, RigidBody
 from ..models.schedule import Schedule
 from ..models.uncertainty import Uncertainty
@@ -17,7 +19,6 @@ from . import initial, laws, linear, schedules, spacecraft, uncertain
 from .document import Document, read_document
 from .errors import ScenarioError, quote
 from .fingerprint import fingerprint
-from .initial import InitialSet, InitialState
 from .instants import FileClock, number_text, read_clock
 from .laws import LawChoice
 from .mapping import NAME, toml_text
@@ -104,6 +105,22 @@ class Scenario:
             return schedule.end
         return schedule.period * (DEFAULT_PERIODS if len(schedule.windows) == 1 else 1)
 
+    @property
+    def mission(self) -> Mission:
+        """What proofs, optima and simulations are asked about, whatever the law."""
+        limits = self.limits
+        return Mission(
+            body=self.body,
+            schedule=self.schedule,
+            start=self.initial,
+            starts=self.initial_set,
+            horizon=self.horizon,
+            tolerance=Tolerance(self.tolerance.attitude, self.tolerance.rate),
+            limit=None if limits is None else TorqueLimit(limits.torque, NORMS[limits.norm]),
+            inertia_tolerance=self.inertia_tolerance,
+            uncertainty=self.uncertainty,
+        )
+
     def law(self, label: str) -> LawChoice:
         """Return the law of that label.
 
@@ -151,7 +168,7 @@ def build_scenario(
     state, bounds = initial.build(file, document, body, starts_in_window=starts_in_window)
     choices = laws.build(file, document)
     warnings += told + schedule_choice.warnings + initial.doubtful_readings(file, document)
-    if bounds.max_angle_deg > 180 + initial.ANGLE_ALLOWANCE:
+    if bounds.max_angle_deg > 180 + ANGLE_ALLOWANCE:
         warnings += (
             f"{document.where('initial' if bounds.from_state else 'initial_set')}: error angle up to "
             f"{float(bounds.max_angle_deg):.6g} deg (2 acos b0): the laws unwind it the long way; "

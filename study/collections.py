@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..models.types import Array
-from ..optim.comparison.measure import Task
 from ..reports import parts
 from ..reports.content.cells import cell_text
 from ..reports.provenance import provenance
@@ -34,19 +33,6 @@ class Arrays:
             raise ValueError(f"array {name} is there already")
         self.held[name] = np.asarray(values, dtype=float)
         return name
-
-
-def task_of(scenario: Scenario) -> Task:
-    """The work that a scenario's laws are compared on."""
-    return Task(
-        body=scenario.body,
-        schedule=scenario.schedule,
-        quaternion=scenario.initial.attitude,
-        rate=scenario.initial.exact_rate,
-        attitude_tolerance=scenario.tolerance.attitude,
-        rate_tolerance=scenario.tolerance.rate,
-        horizon=scenario.horizon,
-    )
 
 
 def printed(table: TableEntry) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:

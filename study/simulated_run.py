@@ -12,7 +12,8 @@ import numpy as np
 
 from ..models.closed_loop import Saturation
 from ..models.laws import Law
-from ..models.norms import LARGEST_COMPONENT, NORMS, Norm
+from ..models.mission import TorqueLimit
+from ..models.norms import LARGEST_COMPONENT
 from ..models.schedule.variants import starting_at
 from ..models.simulation import (
     Figures,
@@ -74,48 +75,50 @@ def seen_in(scenario: Scenario, run: Run | None) -> RunFigures:
     if run is None or run.figures is None or run.trajectory is None:
         return RunFigures()
     torque, floor = run.figures.torque, run.figures.filter_minimum
-    norm = LARGEST_COMPONENT if scenario.limits is None else NORMS[scenario.limits.norm]
+    limit = scenario.mission.limit
+    norm = LARGEST_COMPONENT if limit is None else limit.norm
     peak = torque.peak[norm]
     over = None
-    if scenario.limits is not None and not run.trajectory.is_saturated_model:
-        over = _excess_instant(run.trajectory, norm, float(scenario.limits.torque), peak.value)
+    if limit is not None and not run.trajectory.is_saturated_model:
+        over = _excess_instant(run.trajectory, limit, peak.value)
         over = None if over is None else over + float(run.origin)
     return RunFigures(floor.value if floor is not None else None, peak.value, over)
 
 
-def _excess_instant(trajectory: Trajectory, norm: Norm, limit: float, peak: float) -> float | None:
+def _excess_instant(trajectory: Trajectory, asked: TorqueLimit, peak: float) -> float | None:
     """First instant at which the torque has gone a tenth of the way from the limit to its peak, s."""
+    limit = float(asked.torque)
     if not peak > limit * (1 + 1e-6):
         return None
     times = trajectory.grid()
-    size = norm.peak(trajectory.signals(times).applied_torque.T)
+    size = asked.norm.peak(trajectory.signals(times).applied_torque.T)
     above = np.flatnonzero(size > limit + 0.1 * (peak - limit))
     return float(times[above[0]]) if above.size else None
 
 
 def run_law(scenario: Scenario, law: Law) -> Run:
     """Simulate a law from the scenario's initial state to its horizon."""
-    saturation = None
-    if scenario.simulation.saturate and scenario.limits is not None:
-        saturation = Saturation(scenario.limits.torque, NORMS[scenario.limits.norm])
-    lead, controller = idle_lead(law, scenario.schedule, scenario.initial.rate)
-    if lead >= scenario.horizon:
+    mission, saturation = scenario.mission, None
+    if scenario.simulation.saturate and mission.limit is not None:
+        saturation = Saturation(mission.limit.torque, mission.limit.norm)
+    lead, controller = idle_lead(law, mission.schedule, mission.start.rate)
+    if lead >= mission.horizon:
         lead, controller = Fraction(0), None
     try:
         trajectory = simulate(
             law,
-            scenario.body,
-            starting_at(scenario.schedule, lead) if lead else scenario.schedule,
-            quaternion=scenario.initial.quaternion,
-            rate=scenario.initial.rate,
-            horizon=scenario.horizon - lead,
+            mission.body,
+            starting_at(mission.schedule, lead) if lead else mission.schedule,
+            quaternion=mission.start.quaternion,
+            rate=mission.start.rate,
+            horizon=mission.horizon - lead,
             controller=controller,
             saturation=saturation,
         )
     except SimulationError as error:
         return Run(None, failure=str(error))
-    tolerance = scenario.tolerance
-    figures = read_figures(trajectory, attitude=tolerance.attitude, rate=tolerance.rate)
+    settled = mission.tolerance
+    figures = read_figures(trajectory, attitude=settled.attitude, rate=settled.rate)
     return Run(trajectory, figures, invariants(trajectory), origin=lead)
 
 

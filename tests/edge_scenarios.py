@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction as F
 
+import missions
 import numpy as np
 from floor_attack import decimal, random_inertia
 from hostile_scenarios import shifted
@@ -77,7 +77,7 @@ def edge_question(seed: int) -> FloorQuestion:
     common["attitude"] = F(1, 100)
     common["rate"] = decimal(0.01 / T)
     if rng.random() < 0.5:
-        return FloorQuestion(law=PersistenceFilter(lambda_=lam, R0=R0), **common)
+        return missions.question(law=PersistenceFilter(lambda_=lam, R0=R0), **common)
     mean = float(schedule.square_integral(F(0), schedule.end))
     k0 = decimal((10 ** rng.uniform(-2, 1.5) if "gain" in edges else rng.uniform(0.3, 1.5)) / mean)
     if "gain" in edges and rng.random() < 0.3:
@@ -86,9 +86,9 @@ def edge_question(seed: int) -> FloorQuestion:
     a = decimal(least / T**2 * 10 ** rng.uniform(-1, 1))
     gamma = decimal(10 ** rng.uniform(-3, 0.5) / (mean * float(R0) * float(a) * T))
     law = AdaptiveScaling(lambda_=lam, R0=R0, k0=k0, gamma=gamma, a=a)
-    return FloorQuestion(law=law, options=FloorOptions(max_bins=6, settling_moves=2), **common)
+    return missions.question(law=law, options=FloorOptions(max_bins=6, settling_moves=2), **common)
 
 
 def without_rate(q: FloorQuestion) -> FloorQuestion:
     """The same from rest."""
-    return replace(q, max_rate=None, max_weighted_rate=None)
+    return missions.other(q, max_rate=None, max_weighted_rate=None)

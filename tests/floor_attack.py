@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction as F
 
+import missions
 import numpy as np
 from intermit.models.closed_loop import body_values, close_loop
 from intermit.models.ensemble import MetricOptions, simulate_ensemble
@@ -52,12 +53,12 @@ def random_question(seed: int) -> FloorQuestion:
         "max_weighted_rate": decimal(reach),
     }
     if rng.random() < 0.5:
-        return FloorQuestion(law=PersistenceFilter(lambda_=lam, R0=R0), **common)
+        return missions.question(law=PersistenceFilter(lambda_=lam, R0=R0), **common)
     mean = float(schedule.square_integral(F(0), period) / period)
     k0 = decimal(rng.uniform(0.5, 1.5) / (mean * float(period)))
     gamma = decimal(rng.uniform(0.02, 1.0) * float(k0) / float(R0))
     law = AdaptiveScaling(lambda_=lam, R0=R0, k0=k0, gamma=gamma)
-    return FloorQuestion(law=law, options=FloorOptions(max_bins=10, settling_moves=2), **common)
+    return missions.question(law=law, options=FloorOptions(max_bins=10, settling_moves=2), **common)
 
 
 def random_inertia(rng):
@@ -128,7 +129,9 @@ class Adversary:
             return Attack(False)
         assert floor.value > 0
         rng = np.random.default_rng(seed + 10**6)
-        shape = _Shape(q.law, body or q.body, q.schedule, q.initial, q.max_rate)
+        shape = _Shape(
+            q.law, body or q.mission.body, q.mission.schedule, q.initial, q.mission.starts.max_rate
+        )
         points = shape.draw(rng, self.batches[0])
         values = self.ratios(q, found, shape, points)
         for number, count in enumerate(self.batches[1:]):
@@ -143,7 +146,7 @@ class Adversary:
     def horizon(self, q: FloorQuestion, found: FloorAnswer) -> F:
         if found.floor.horizon is not None:
             return found.floor.horizon
-        period, settling = q.schedule.period, found.convergence.settling
+        period, settling = q.mission.schedule.period, found.convergence.settling
         wanted = self.periods if settling is None else max(self.periods, settling / float(period) + 1)
         return int(min(wanted, self.most_periods)) * period
 
@@ -151,17 +154,19 @@ class Adversary:
         """Figures of each start, (8, n); 0 for a start that is not in the set."""
         floor, bound = found.floor, found.convergence
         horizon = self.horizon(q, found)
-        cycles = 1 if q.schedule.period is None else int(horizon / q.schedule.period)
+        cycles = 1 if q.mission.schedule.period is None else int(horizon / q.mission.schedule.period)
         times = np.linspace(0, float(horizon), 40 * cycles + 1)
         states = shape.states(points)
         runs = simulate_ensemble(
             q.law,
             shape.body,
-            q.schedule,
+            q.mission.schedule,
             states,
             horizon=horizon,
             times=times,
-            metrics=MetricOptions(attitude=float(q.attitude), rate=float(q.rate)),
+            metrics=MetricOptions(
+                attitude=float(q.mission.tolerance.attitude), rate=float(q.mission.tolerance.rate)
+            ),
         )
         m, tiny = runs.metrics, 1e-300
         inside = shape.inside(states)
@@ -193,7 +198,7 @@ def seen_over_time(q: FloorQuestion, body: RigidBody, times, states) -> dict[str
     loop = close_loop(q.law)
     function = loop.function("seen", loop.augmented_rate, loop.applied_torque)
     columns = states.reshape(-1, states.shape[2]).T
-    known = np.tile([q.schedule.gain(times), q.schedule.gain_rate(times)], len(states))
+    known = np.tile([q.mission.schedule.gain(times), q.mission.schedule.gain_rate(times)], len(states))
     constants = (np.tile(x[:, None], columns.shape[1]) for x in (loop.parameter_values(), body_values(body)))
     Omega, torque = (np.asarray(x).T for x in function(columns, known, *constants))
     # 4 asin(sqrt((1 - b0)/2)) = 4 asin(|(1 - b0, bv)|/2) loses no digits at either end

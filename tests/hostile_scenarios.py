@@ -3,6 +3,7 @@
 from dataclasses import replace
 from fractions import Fraction as F
 
+import missions
 import numpy as np
 from floor_attack import Adversary, Attack, decimal, random_inertia
 from intermit.models.laws import AdaptiveScaling, PersistenceFilter
@@ -82,13 +83,13 @@ def hostile_question(seed: int) -> FloorQuestion:
             tuple(size if i == j else size / 3 for j in range(3)) for i in range(3)
         )
     if rng.random() < 0.5:
-        return FloorQuestion(law=PersistenceFilter(lambda_=lam, R0=R0), **common)
+        return missions.question(law=PersistenceFilter(lambda_=lam, R0=R0), **common)
     mean = float(schedule.square_integral(F(0), schedule.period) / schedule.period)
     k0 = F(0) if rng.random() < 0.15 else decimal(rng.uniform(0.1, 2) / (mean * period))
     gamma = decimal(10 ** rng.uniform(-3, 0.5) / period / float(R0))
     a = decimal(10 ** rng.uniform(-1.5, 1))
     law = AdaptiveScaling(lambda_=lam, R0=R0, k0=k0, gamma=gamma, a=a)
-    return FloorQuestion(law=law, options=FloorOptions(max_bins=8, settling_moves=2), **common)
+    return missions.question(law=law, options=FloorOptions(max_bins=8, settling_moves=2), **common)
 
 
 def perturbed(body: RigidBody, tolerance, rng) -> RigidBody:
@@ -103,8 +104,8 @@ def perturbed(body: RigidBody, tolerance, rng) -> RigidBody:
 def hostile_attack(seed: int, *, question: FloorQuestion | None = None) -> Attack:
     """Certify, then attack each bound in turn, over the whole certified time up to 25 periods."""
     q = hostile_question(seed) if question is None else question
-    body = q.body
-    if q.inertia_tolerance is not None:
-        body = perturbed(body, q.inertia_tolerance, np.random.default_rng(seed + 77))
+    body = q.mission.body
+    if q.mission.inertia_tolerance is not None:
+        body = perturbed(body, q.mission.inertia_tolerance, np.random.default_rng(seed + 77))
     adversary = Adversary(batches=(32, 20, 20, 20), periods=4, most_periods=25)
     return adversary.attack(q, seed, body)

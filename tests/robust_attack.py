@@ -48,11 +48,11 @@ def random_robust_question(seed: int) -> RobustQuestion:
     )
     return RobustQuestion(
         law=base.law,
-        body=base.body,
-        schedule=base.schedule,
+        body=base.mission.body,
+        schedule=base.mission.schedule,
         uncertainty=uncertainty,
-        max_angle_deg=min(base.max_angle_deg, F(150)),
-        max_weighted_rate=base.max_weighted_rate / 2,
+        max_angle_deg=min(base.mission.starts.max_angle_deg, F(150)),
+        max_weighted_rate=base.mission.starts.max_weighted_rate / 2,
     )
 
 

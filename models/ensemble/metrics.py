@@ -8,6 +8,7 @@ from typing import Any, final
 
 import numpy as np
 
+from ..mission import Tolerance
 from ..norms import MEASURED, Norm
 from ..simulation.phases import Phase
 from ..types import Array
@@ -44,6 +45,11 @@ class MetricOptions:
     attitude: float = 1e-2
     rate: float = 1e-2
     norms: tuple[Norm, ...] = MEASURED
+
+    @classmethod
+    def within(cls, tolerance: Tolerance, norms: tuple[Norm, ...] = MEASURED) -> MetricOptions:
+        """Settled as a mission says."""
+        return cls(attitude=float(tolerance.attitude), rate=float(tolerance.rate), norms=norms)
 
     def __post_init__(self) -> None:
         if not (self.attitude > 0 and self.rate > 0):

@@ -63,17 +63,8 @@ class EqualTerms:
 
 def problem_of(run: LawRun, norm: Norm, goal: Goal, profile: WindowProfile) -> TransferProblem:
     """The transfer a law made, as a problem for any controller."""
-    task = run.task
-    return TransferProblem.through(
-        task.schedule,
-        body=task.body,
-        horizon=goal.time,
-        attitude=task.quaternion,
-        rate=task.rate,
-        norm=norm,
-        terminal=Terminal(attitude=goal.attitude, rate=goal.rate),
-        profile=profile,
-    )
+    terminal = Terminal(attitude=goal.attitude, rate=goal.rate)
+    return TransferProblem.of(run.mission, norm, horizon=goal.time, terminal=terminal, profile=profile)
 
 
 def on_equal_terms(
@@ -84,8 +75,8 @@ def on_equal_terms(
     Parameters
     ----------
     run : LawRun
-        The law's run, with its task.
-    norm : NormName
+        The law's run, with its mission.
+    norm : Norm
         Norm of the torque whose peak is compared.
     goal : Goal, optional
         The end asked for; None for the law's settling.
@@ -105,7 +96,8 @@ def on_equal_terms(
 
     goal = goal if goal is not None else run.goal
     if goal is None:
-        raise ValueError(f"{run.label} does not settle by {float(run.task.horizon):g} s: nothing to compare")
+        end = float(run.mission.horizon)
+        raise ValueError(f"{run.label} does not settle by {end:g} s: nothing to compare")
     problem = problem_of(run, norm, goal, profile)
     peak = run.peak(norm, commanded=profile is WindowProfile.GAIN)
     answer = minimum_peak(problem)

@@ -9,9 +9,8 @@ from typing import final
 import numpy as np
 
 from ...models.laws import Law
+from ...models.mission import Mission
 from ...models.norms import Norm
-from ...models.rigid_body import RigidBody
-from ...models.schedule import Schedule
 from ...models.simulation import (
     DOP853,
     Figures,
@@ -21,36 +20,6 @@ from ...models.simulation import (
     read_figures,
     simulate,
 )
-from ...models.types import Array
-
-
-@final
-@dataclass(frozen=True)
-class Task:
-    """The work every law is given.
-
-    Attributes
-    ----------
-    body, schedule : what is turned, and through which windows
-    quaternion : (4,), scalar first, unit; error attitude at the start
-    rate : (3,), rad/s
-    attitude_tolerance, rate_tolerance : settled means |bv| and |w| (rad/s) within these, Euclidean,
-        for good
-    horizon : end of the run, s
-    """
-
-    body: RigidBody
-    schedule: Schedule
-    quaternion: tuple[float, float, float, float]
-    rate: tuple[Fraction, Fraction, Fraction]
-    attitude_tolerance: Fraction
-    rate_tolerance: Fraction
-    horizon: Fraction
-
-    @property
-    def rate_array(self) -> Array:
-        """Start rate, rad/s, (3,)."""
-        return np.array([float(x) for x in self.rate])
 
 
 @final
@@ -72,11 +41,11 @@ class Goal:
 @final
 @dataclass(frozen=True, eq=False)
 class LawRun:
-    """One law on a task; its torque figures are over [0, settling], or the whole run if it never settles."""
+    """One law on a mission; torque figures are over [0, settling], or the whole run if it never settles."""
 
     label: str
     law: Law
-    task: Task
+    mission: Mission
     trajectory: Trajectory
     figures: Figures
 
@@ -97,11 +66,11 @@ class LawRun:
 
     @property
     def goal(self) -> Goal | None:
-        """Within the task's tolerances by the settling time; None if it never settles or starts there."""
+        """Within the mission's tolerances by the settling time; None if it never settles or starts there."""
         settling = self.figures.settling
         if settling is None or settling <= 0:
             return None
-        return Goal(Fraction(settling), self.task.attitude_tolerance, self.task.rate_tolerance)
+        return Goal(Fraction(settling), self.mission.tolerance.attitude, self.mission.tolerance.rate)
 
     @property
     def end_goal(self) -> Goal | None:
@@ -110,10 +79,11 @@ class LawRun:
         The balls are wider by a millionth, so that the law's own torque, rounded, reaches them.
         """
         attitude, rate = (Fraction(x) * (1 + WIDER) for x in self.end)
-        start = float(np.linalg.norm(self.task.quaternion[1:])), float(np.linalg.norm(self.task.rate_array))
+        begin = self.mission.start
+        start = float(np.linalg.norm(begin.quaternion[1:])), float(np.linalg.norm(begin.rate))
         if attitude >= 1 or (start[0] <= attitude and start[1] <= rate):
             return None
-        return Goal(self.task.horizon, attitude, rate)
+        return Goal(self.mission.horizon, attitude, rate)
 
 
 WIDER = Fraction(1, 10**6)
@@ -122,19 +92,18 @@ ACCURATE = DOP853(rtol=1e-11, atol=1e-13)
 """Every reported number comes from a run at this setting: relative error below 1e-10."""
 
 
-def run_law(label: str, law: Law, task: Task, *, method: DOP853 = ACCURATE) -> LawRun:
-    """Simulate a law on a task and read off its figures of merit.
+def run_law(label: str, law: Law, mission: Mission, *, method: DOP853 = ACCURATE) -> LawRun:
+    """Simulate a law on a mission and read off its figures of merit.
 
     Raises
     ------
     SimulationError
-        If the run cannot be carried to the task's horizon.
+        If the run cannot be carried to the mission's horizon.
     """
     trajectory = simulate(
-        law, task.body, task.schedule, quaternion=task.quaternion, rate=task.rate_array,
-        horizon=task.horizon, method=method,
+        law, mission.body, mission.schedule, quaternion=mission.start.quaternion, rate=mission.start.rate,
+        horizon=mission.horizon, method=method,
     )  # fmt: skip
-    figures = read_figures(
-        trajectory, attitude=task.attitude_tolerance, rate=task.rate_tolerance, until_settled=True
-    )
-    return LawRun(label=label, law=law, task=task, trajectory=trajectory, figures=figures)
+    settled = mission.tolerance
+    figures = read_figures(trajectory, attitude=settled.attitude, rate=settled.rate, until_settled=True)
+    return LawRun(label=label, law=law, mission=mission, trajectory=trajectory, figures=figures)

@@ -9,9 +9,9 @@ import numpy as np
 
 from ...models.ensemble import EnsembleResult, MetricOptions, Tolerances, simulate_ensemble
 from ...models.laws import Law
+from ...models.mission import Mission
 from ...models.norms import Norm
 from ...models.types import Array
-from ..comparison.measure import Task
 from .search import Outcomes
 from .space import with_parameters
 
@@ -27,36 +27,34 @@ class EnsembleRuns:
     Parameters
     ----------
     law : the law whose parameters are varied
-    task : its work
+    mission : its work
     settle : settling time asked for, s
     norm : of the peak
     executor : workers that share the runs of a generation, optional
     """
 
     def __init__(
-        self, law: Law, task: Task, *, settle: Fraction, norm: Norm, executor: Executor | None = None
+        self, law: Law, mission: Mission, *, settle: Fraction, norm: Norm, executor: Executor | None = None
     ) -> None:
         # one period more than asked for: what leaves the tolerances again has not settled
-        self._horizon = min(settle + (task.schedule.period or Fraction(0)), max(task.horizon, settle))
-        self._law, self._task, self._norm, self._settle = law, task, norm, settle
+        self._horizon = min(settle + (mission.schedule.period or Fraction(0)), max(mission.horizon, settle))
+        self._law, self._mission, self._norm, self._settle = law, mission, norm, settle
         self._executor = executor
         late = np.linspace(float(settle), float(self._horizon), LATE_POINTS)
         self._late = np.unique(late)
 
     def __call__(self, candidates: list[dict[str, Fraction]]) -> Outcomes:
         """Simulate all candidates."""
-        task = self._task
+        mission = self._mission
         result = simulate_ensemble(
             [with_parameters(self._law, c) for c in candidates],
-            task.body,
-            task.schedule,
-            np.concatenate([task.quaternion, task.rate_array]),
+            mission.body,
+            mission.schedule,
+            np.concatenate([mission.start.quaternion, mission.start.rate]),
             horizon=self._horizon,
             times=self._late,
             tolerances=SEARCHING,
-            metrics=MetricOptions(
-                attitude=float(task.attitude_tolerance), rate=float(task.rate_tolerance), norms=(self._norm,)
-            ),
+            metrics=MetricOptions.within(mission.tolerance, (self._norm,)),
             executor=self._executor,
         )
         assert result.metrics is not None
@@ -67,8 +65,8 @@ class EnsembleRuns:
 
     def _excess(self, result: EnsembleResult) -> Array:
         """log10 of the largest ratio to a tolerance from the settling time on."""
-        attitude = np.linalg.norm(result.states[:, :, 1:4], axis=2) / float(self._task.attitude_tolerance)
-        rate = np.linalg.norm(result.states[:, :, 4:7], axis=2) / float(self._task.rate_tolerance)
+        attitude = np.linalg.norm(result.states[:, :, 1:4], axis=2) / float(self._mission.tolerance.attitude)
+        rate = np.linalg.norm(result.states[:, :, 4:7], axis=2) / float(self._mission.tolerance.rate)
         worst = np.log10(np.maximum(np.maximum(attitude, rate).max(axis=1), 1e-300))
         assert result.metrics is not None
         settling = result.metrics.settling_time

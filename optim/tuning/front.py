@@ -9,10 +9,11 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any, final
 
 from ...models.laws import Law
+from ...models.mission import Mission
 from ...models.norms import Norm
 from ..comparison.equal_terms import check_order
-from ..comparison.measure import LawRun, Task
-from ..problem import Terminal, TransferProblem
+from ..comparison.measure import LawRun
+from ..problem import TransferProblem
 from .search import DifferentialEvolution
 from .tune import Certify, Tuned, tune
 
@@ -60,16 +61,13 @@ class Front:
     runs: Mapping[str, tuple[LawRun | None, ...]]
 
 
-def best_possible(task: Task, settle: Fraction, norm: Norm) -> BestPossible:
-    """Optimum and certified bound for the task's terminal balls at a given time."""
+def best_possible(mission: Mission, settle: Fraction, norm: Norm) -> BestPossible:
+    """Optimum and certified bound for the mission's terminal balls at a given time."""
     from ..bounds.bound import certified_lower_bound
     from ..peak import minimum_peak
     from ..peak.search.result import Standing
 
-    problem = TransferProblem.through(
-        task.schedule, body=task.body, horizon=settle, attitude=task.quaternion, rate=task.rate,
-        norm=norm, terminal=Terminal(attitude=task.attitude_tolerance, rate=task.rate_tolerance),
-    )  # fmt: skip
+    problem = TransferProblem.of(mission, norm, horizon=settle)
     answer = minimum_peak(problem)
     certificate = certified_lower_bound(problem)
     optimum = answer.peak if answer.standing is Standing.CHECKED else None
@@ -79,7 +77,7 @@ def best_possible(task: Task, settle: Fraction, norm: Norm) -> BestPossible:
 
 def pareto_front(
     laws: Mapping[str, Law],
-    task: Task,
+    mission: Mission,
     settles: Sequence[Fraction],
     *,
     norm: Norm,
@@ -96,16 +94,16 @@ def pareto_front(
     jobs = {
         label: [
             _submit(
-                executor, tune, law, task, settle=settle, norm=norm, label=label, method=method,
+                executor, tune, law, mission, settle=settle, norm=norm, label=label, method=method,
                 certify=conditions.get(label),
             )
             for settle in settles
         ]
         for label, law in laws.items()
     }  # fmt: skip
-    best = [_submit(executor, best_possible, task, settle, norm) for settle in settles]
+    best = [_submit(executor, best_possible, mission, settle, norm) for settle in settles]
     tuned = {label: tuple(t.result() for t in row) for label, row in jobs.items()}
-    runs = {label: tuple(t.run(task) for t in row) for label, row in tuned.items()}
+    runs = {label: tuple(t.run(mission) for t in row) for label, row in tuned.items()}
     front = Front(norm, tuple(settles), tuple(b.result() for b in best), tuned, runs)
     for label, row in runs.items():
         for found, run in zip(front.best, row, strict=True):

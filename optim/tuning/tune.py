@@ -10,9 +10,10 @@ from typing import final
 import numpy as np
 
 from ...models.laws import Law
+from ...models.mission import Mission
 from ...models.norms import Norm
 from ...models.simulation import SimulationError
-from ..comparison.measure import LawRun, Task, run_law
+from ..comparison.measure import LawRun, run_law
 from .choose import least_passing
 from .evaluate import EnsembleRuns
 from .search import DifferentialEvolution, SearchHistory, Trial
@@ -46,14 +47,14 @@ class Tuned:
     refused: tuple[tuple[Trial, str], ...]
     reason: str = ""
 
-    def run(self, task: Task) -> LawRun | None:
+    def run(self, mission: Mission) -> LawRun | None:
         """Accurate run of the answer: the reported numbers come from it, not from the search."""
-        return None if self.law is None else run_law(self.label, self.law, task)
+        return None if self.law is None else run_law(self.label, self.law, mission)
 
 
 def tune(
     law: Law,
-    task: Task,
+    mission: Mission,
     *,
     settle: Fraction,
     norm: Norm,
@@ -69,7 +70,7 @@ def tune(
     ----------
     law : Law
         Its positive parameters are varied.
-    task : Task
+    mission : Mission
         What it has to do: body, windows, start, tolerances, horizon.
     settle : Fraction
         Latest settling time, s.
@@ -95,14 +96,14 @@ def tune(
     name = label or law.name
     space = SearchSpace.around(law, ranges)
     method = method if method is not None else DifferentialEvolution()
-    evaluate = EnsembleRuns(law, task, settle=settle, norm=norm)
+    evaluate = EnsembleRuns(law, mission, settle=settle, norm=norm)
     history = method.run(space, evaluate, start=space.encode(law.parameters) if start_from_law else None)
     candidates = _distinct(history.settled_by_peak)
     reasons: dict[int, str] = {}
 
     def passes(number: int) -> bool:
         chosen = with_parameters(law, dict(candidates[number].parameters))
-        reason = _failure(name, chosen, task, settle) or (certify(chosen) if certify is not None else None)
+        reason = _failure(name, chosen, mission, settle) or (certify(chosen) if certify is not None else None)
         if reason is not None:
             reasons[number] = reason
         return reason is None
@@ -122,10 +123,10 @@ def tune(
     return Tuned(name, settle, norm, None, history, refused, why)
 
 
-def _failure(name: str, law: Law, task: Task, settle: Fraction) -> str | None:
+def _failure(name: str, law: Law, mission: Mission, settle: Fraction) -> str | None:
     """Why an accurate run does not confirm what the search saw, or None."""
     try:
-        run = run_law(name, law, task)
+        run = run_law(name, law, mission)
     except SimulationError as error:
         return str(error)
     if run.figures.settling is None or run.figures.settling > settle:

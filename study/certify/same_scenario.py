@@ -32,10 +32,8 @@ from ...verify.lyapunov.forms import inertia_data, law_form
 from ...verify.robust.certificate import uncertainty_data
 from ...verify.schedule.filter_start import greatest_gain_at
 from ...verify.schedule.zero_runs import default_length
-from ..check.filter_question import floor_question
 from ..optimum.lower_bounds import transfers_data
 from ..optimum.nominal import nominal_words
-from ..simulated_run import RunFigures
 
 BOUND = "peak-lower-bound"
 CONDITIONS = ("sharp-condition", "paper-condition")
@@ -110,7 +108,7 @@ class _Known:
         start: dict[str, object] = {}
         if law is not None:
             loop = close_loop(law)
-            data["initial_set"] = set_data(floor_question(scenario, law, RunFigures(), search=False))
+            data["initial_set"] = set_data(scenario.initial_set)
             data["parameters"] = law.parameters
             initial = {state.name: state.initial for state in law.controller_states}
             data["initial"] = initial

@@ -213,8 +213,12 @@ def _members(scenario: Scenario, law: Law) -> MembersFound:
 def _algebraic_claims(scenario: Scenario, law: Law) -> Iterator[Claim]:
     """Claims about R(0), and about the law's storage function over the inertia's whole tolerance."""
     yield from _filter_claims(scenario, law)
+    mission = scenario.mission
     yield from lyapunov_claims(
-        law, scenario.body, tolerance=scenario.inertia_tolerance, schedule=scenario.schedule
+        law,
+        mission.body,
+        tolerance=mission.inertia_tolerance,
+        schedule=mission.schedule,
     )
 
 

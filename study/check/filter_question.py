@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ...models.laws import Law
-from ...models.norms import LARGEST_COMPONENT, NORMS
 from ...models.schedule import Schedule
 from ...scenario import Scenario
 from ...verify.filter.certify import FloorOptions, certify_floor
@@ -21,19 +20,9 @@ COARSE = FloorOptions(max_bins=1, max_periods=8)
 
 def floor_question(scenario: Scenario, law: Law, seen: RunFigures, *, search: bool) -> FloorQuestion:
     """Put a scenario's question about one law; what the run showed stands beside the answer."""
-    bounds, limits = scenario.initial_set, scenario.limits
     return FloorQuestion(
         law=law,
-        body=scenario.body,
-        schedule=scenario.schedule,
-        inertia_tolerance=scenario.inertia_tolerance,
-        max_angle_deg=bounds.max_angle_deg,
-        max_rate=bounds.max_rate,
-        max_weighted_rate=bounds.max_weighted_rate,
-        attitude=scenario.tolerance.attitude,
-        rate=scenario.tolerance.rate,
-        torque_limit=None if limits is None else limits.torque,
-        torque_norm=LARGEST_COMPONENT if limits is None else NORMS[limits.norm],
+        mission=scenario.mission,
         run_floor=None if seen.floor is None else (seen.floor, float(scenario.horizon)),
         run_peak=seen.peak,
         search=Search(samples=64, rounds=2, local=24, seed=scenario.check.seed) if search else None,
@@ -58,6 +47,6 @@ def robust_question(scenario: Scenario, law: Law) -> RobustQuestion:
 
 def is_certified(question: FloorQuestion, law: Law, schedule: Schedule) -> bool:
     """Whether convergence is certified, coarsely, with another law or schedule in the same question."""
-    other = replace(question, law=law, schedule=schedule)
+    other = replace(question, law=law, mission=replace(question.mission, schedule=schedule))
     floor = certify_floor(law, other.bounds, schedule, other.initial, options=COARSE)
     return floor is not None and reaches_far_enough(floor) and floor.value > 0

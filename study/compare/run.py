@@ -24,7 +24,7 @@ from ...reports.record.document import Sections
 from ...reports.record.tables import CellEntry, CollectionEntry, FigureEntry, TableEntry
 from ...reports.summary import Shown, Summary
 from ...scenario import Scenario
-from ..collections import Arrays, certified_below, collection_record, newtons, printed, task_of
+from ..collections import Arrays, certified_below, collection_record, newtons, printed
 from ..options import CompareOptions
 from ..plots import TIME, draw, level, needed, windows_of
 
@@ -145,7 +145,7 @@ def _chart(row: Row, norm: str) -> Chart:
     lines = [Line(row.label, t, size)]
     if norm in row.terms:
         lines.append(level("certified bound", t, row.terms[norm].bound, 1))
-    shaded = () if row.run is None else windows_of(row.run.task.schedule, Fraction(float(t[-1])))
+    shaded = () if row.run is None else windows_of(row.run.mission.schedule, Fraction(float(t[-1])))
     return Chart(norm, row.label, TIME, Axis(f"|g u|, {norm}", "N m"), tuple(lines), "", shaded)
 
 
@@ -164,7 +164,7 @@ def run_comparison(scenario: Scenario, options: CompareOptions | None = None) ->
 def _row(scenario: Scenario, choice: Any, options: CompareOptions) -> Row:
     label = choice.label
     try:
-        run = run_law(label, choice.build(), task_of(scenario))
+        run = run_law(label, choice.build(), scenario.mission)
     except SimulationError as error:
         return Row(label, None, {}, str(error), False, "mend the law or its parameters: `check` says more")
     if run.figures.settling is not None:
@@ -192,12 +192,13 @@ def _terms(scenario: Scenario, run: LawRun, goal: Goal) -> dict[str, EqualTerms]
 
 def _unsettled(run: LawRun) -> str:
     """How far a law is from settled at its horizon."""
+    settled = run.mission.tolerance
     attitude, rate = (
         apart(value, most, digits=3)[0]
-        for value, most in zip(run.end, (run.task.attitude_tolerance, run.task.rate_tolerance), strict=True)
+        for value, most in zip(run.end, (settled.attitude, settled.rate), strict=True)
     )
     there = f"|bv| = {attitude}, |w| = {rate} rad/s there"
-    return f"does not settle by {float(run.task.horizon):g} s: {there}"
+    return f"does not settle by {float(run.mission.horizon):g} s: {there}"
 
 
 def comparison_record(comparison: Comparison) -> Record:

@@ -154,13 +154,10 @@ def transfer_and_origin(scenario: Scenario, norm: Norm) -> tuple[TransferProblem
     """
     table, horizon = scenario.optimum, final_time(scenario)
     require_few_windows(scenario, scenario.schedule.windows_before(horizon), horizon)
-    problem = TransferProblem.through(
-        scenario.schedule,
-        body=scenario.body,
+    problem = TransferProblem.of(
+        scenario.mission,
+        norm,
         horizon=horizon,
-        attitude=[Fraction(x) for x in scenario.initial.attitude],
-        rate=scenario.initial.exact_rate,
-        norm=norm,
         terminal=Terminal(attitude=table.attitude_tolerance, rate=table.rate_tolerance),
         profile=WindowProfile.GAIN if table.profile == "gain" else WindowProfile.FULL,
     )
@@ -200,9 +197,8 @@ def limit_of(scenario: Scenario, norm: Norm) -> float | None:
     own = "thrusters" if table.thrusters is not None else table.norm
     if table.torque_limit is not None and key == own:
         return float(table.torque_limit)
-    if scenario.limits is not None and scenario.limits.norm == key:
-        return float(scenario.limits.torque)
-    return None
+    limit = scenario.mission.limit
+    return float(limit.torque) if limit is not None and limit.norm == norm else None
 
 
 def _bound(problem: TransferProblem, answer: PeakAnswer, options: OptimumOptions) -> LowerBound | None:

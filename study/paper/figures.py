@@ -17,7 +17,7 @@ from ...reports.record import Record
 from ...reports.record.document import Sections
 from ...reports.record.tables import CellEntry, CollectionEntry, FigureEntry, TableEntry
 from ...scenario import Scenario
-from ..collections import Arrays, collection_record, task_of
+from ..collections import Arrays, collection_record
 from .statements import StartData, Statement, Survey, statements, survey
 
 POINTS = 2801
@@ -78,9 +78,9 @@ def _on_body(scenario: Scenario) -> BodyRuns:
     law = next((law for law in laws if isinstance(law, AdaptiveScaling)), None)
     if law is None:
         raise ValueError(f"{scenario.path.name} has no {AdaptiveScaling.name} law")
-    task = task_of(scenario)
-    slow, fast = (run_law(f"adaptive, gamma {float(g):g}", replace(law, gamma=g), task) for g in GAMMAS)
-    reference = run_law("persistence filter", PersistenceFilter(law.lambda_, law.R0), task)
+    mission = scenario.mission
+    slow, fast = (run_law(f"adaptive, gamma {float(g):g}", replace(law, gamma=g), mission) for g in GAMMAS)
+    reference = run_law("persistence filter", PersistenceFilter(law.lambda_, law.R0), mission)
     return BodyRuns(scenario.spacecraft_name or scenario.name, slow, fast, reference)
 
 
@@ -92,7 +92,7 @@ def _survey(scenario: Scenario) -> tuple[Survey, ...]:
         slow, fast = (AdaptiveScaling(lambda_=decay, gamma=g, R0=R0, k0=k0) for g in GAMMAS)
         pairs.append((slow, fast))
         references.append(PersistenceFilter(lambda_=decay, R0=R0))
-    return survey(task_of(scenario), choices, pairs, references)
+    return survey(scenario.mission, choices, pairs, references)
 
 
 def paper_record(study: PaperStudy) -> Record:
@@ -169,7 +169,7 @@ def _words(choice: StartData) -> str:
 
 
 def _gain_figure(body: BodyRuns, arrays: Arrays) -> FigureEntry:
-    schedule = body.slow.task.schedule
+    schedule = body.slow.mission.schedule
     t = np.linspace(0, float(schedule.period or schedule.end), 801)
     line = parts.series("g", arrays.put("g.time", t), arrays.put("g.value", schedule.gain(t)))
     return parts.figure(

@@ -17,8 +17,9 @@ import numpy as np
 
 from ...models.ensemble import MetricOptions, simulate_ensemble
 from ...models.laws import AdaptiveScaling, PersistenceFilter
+from ...models.mission import Mission
 from ...models.norms import LARGEST_COMPONENT
-from ...optim.comparison.measure import LawRun, Task
+from ...optim.comparison.measure import LawRun
 
 CONVERGED = 1e-3
 """R has converged if the runs agree to this, relative, over the last period."""
@@ -42,7 +43,7 @@ class Statement:
 
 
 def statements(slow: LawRun, fast: LawRun, reference: LawRun) -> tuple[Statement, ...]:
-    """Check the paper's statements on three runs of one task.
+    """Check the paper's statements on three runs of one mission.
 
     Parameters
     ----------
@@ -72,8 +73,9 @@ def _lower_in_transient(slow: LawRun, reference: LawRun) -> Statement:
 
 def _higher_later(slow: LawRun, reference: LawRun) -> Statement:
     """Whether in some later window the adaptive law's largest torque is the larger."""
-    for window in slow.task.schedule.windows_between(slow.task.schedule.windows[0].off, slow.task.horizon):
-        t = np.linspace(float(window.on), min(float(window.off), float(slow.task.horizon)), 400)
+    schedule, end = slow.mission.schedule, slow.mission.horizon
+    for window in schedule.windows_between(schedule.windows[0].off, end):
+        t = np.linspace(float(window.on), min(float(window.off), float(end)), 400)
         a = float(np.abs(slow.trajectory.signals(t).applied_torque).max())
         b = float(np.abs(reference.trajectory.signals(t).applied_torque).max())
         if a > b:
@@ -102,7 +104,7 @@ def _gamma_settles_sooner(slow: LawRun, fast: LawRun) -> Statement:
 
 def _same_filter(runs: Sequence[LawRun]) -> Statement:
     end = runs[0].trajectory.end
-    period = runs[0].task.schedule.period
+    period = runs[0].mission.schedule.period
     t = np.linspace(end - float(period if period is not None else end / 8), end, 400)
     R = np.array([run.trajectory.controller_state("R", t) for run in runs])
     spread = float(((R.max(axis=0) - R.min(axis=0)) / R.max(axis=0)).max())
@@ -140,7 +142,7 @@ class Survey:
 
 
 def survey(
-    task: Task, choices: Sequence[StartData], pairs: Sequence[tuple[AdaptiveScaling, AdaptiveScaling]],
+    mission: Mission, choices: Sequence[StartData], pairs: Sequence[tuple[AdaptiveScaling, AdaptiveScaling]],
     references: Sequence[PersistenceFilter],
 ) -> tuple[Survey, ...]:  # fmt: skip
     """Peaks and settling of every choice at once; the three statements that need no history.
@@ -151,11 +153,11 @@ def survey(
     slow, fast, reference = (
         simulate_ensemble(
             list(laws),
-            task.body,
-            task.schedule,
+            mission.body,
+            mission.schedule,
             starts,
-            horizon=task.horizon,
-            metrics=MetricOptions(attitude=float(task.attitude_tolerance), rate=float(task.rate_tolerance)),
+            horizon=mission.horizon,
+            metrics=MetricOptions.within(mission.tolerance),
         ).metrics
         for laws in ([p[0] for p in pairs], [p[1] for p in pairs], references)
     )

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
 
+from ...models.mission import Mission
 from ...models.norms import NORMS, Norm
-from ...optim.comparison.measure import Task
 from ...optim.schedule_study import LeastOnTime, ScheduleCase, ScheduleFamily, least_on_time, study_schedules
 from ...optim.tuning.conditions import certified_floor
 from ...reports import parts
@@ -18,7 +18,7 @@ from ...reports.record.claims import QuantityEntry
 from ...reports.record.document import Sections
 from ...reports.record.tables import CellEntry, CollectionEntry, FigureEntry, TableEntry
 from ...scenario import LawChoice, Scenario, ScenarioError
-from ..collections import Arrays, certified_below, collection_record, newtons, task_of
+from ..collections import Arrays, certified_below, collection_record, newtons
 from ..optimum.run import require_few_windows
 
 DEFAULT_DUTY = (Fraction(1, 5), Fraction(3, 10), Fraction(2, 5), Fraction(1, 2), Fraction(3, 5))
@@ -63,16 +63,16 @@ def run_schedule_study(
         )
     duty = scenario.study.duty_cycles or DEFAULT_DUTY
     time = scenario.optimum.final_time or scenario.horizon
-    built, task, norm = choice.build(), task_of(scenario), norm or NORMS[scenario.optimum.norm]
-    _require_windows_that_fit(scenario, task, periods, duty, time)
+    built, mission, norm = choice.build(), scenario.mission, norm or NORMS[scenario.optimum.norm]
+    _require_windows_that_fit(scenario, mission, periods, duty, time)
     cases = study_schedules(
-        built, task, periods, duty, time=time, norm=norm, floor=certified_floor, executor=executor
+        built, mission, periods, duty, time=time, norm=norm, floor=certified_floor, executor=executor
     )
     least: tuple[LeastOnTime, ...] = ()
     if scenario.study.torque_limit is not None:
         least = tuple(
             least_on_time(
-                built, task, period, torque_limit=scenario.study.torque_limit, time=time, norm=norm,
+                built, mission, period, torque_limit=scenario.study.torque_limit, time=time, norm=norm,
                 floor=certified_floor,
             )
             for period in periods
@@ -81,7 +81,11 @@ def run_schedule_study(
 
 
 def _require_windows_that_fit(
-    scenario: Scenario, task: Task, periods: Sequence[Fraction], duty: Sequence[Fraction], time: Fraction
+    scenario: Scenario,
+    mission: Mission,
+    periods: Sequence[Fraction],
+    duty: Sequence[Fraction],
+    time: Fraction,
 ) -> None:
     """Refuse a period in which the window of some duty cycle cannot stand, or of which too many come."""
     family = ScheduleFamily()
@@ -89,7 +93,7 @@ def _require_windows_that_fit(
         require_few_windows(scenario, int(time // period), time)
         for share in duty:
             try:
-                family.task(task, period, share * period)
+                family.applied_to(mission, period, share * period)
             except ValueError as error:
                 raise ScenarioError(
                     f"{scenario.path.name}: study",

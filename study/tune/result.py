@@ -19,7 +19,6 @@ from ...optim.tuning.tune import Tuned
 from ...reports.content.blocks import Axis, Chart, Line
 from ...reports.summary import Shown, Summary
 from ...scenario import Scenario
-from ..collections import task_of
 from ..plots import draw, needed
 
 if TYPE_CHECKING:
@@ -58,7 +57,7 @@ class TuningStudy(Shown):
     @cached_property
     def run(self) -> LawRun | None:
         """Its accurate run; None where no law was found."""
-        return self.tuned.run(task_of(self.scenario))
+        return self.tuned.run(self.scenario.mission)
 
     @property
     def peak(self) -> float | None:

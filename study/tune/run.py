@@ -23,7 +23,7 @@ from ...reports.record.tables import CellEntry, CodeCell, CollectionEntry, Serie
 from ...scenario import LawChoice, Scenario, ScenarioError
 from ...verify.filter.comparison import BodyBounds
 from ...verify.filter.known_proofs import has_comparison
-from ..collections import Arrays, certified_below, collection_record, newtons, task_of
+from ..collections import Arrays, certified_below, collection_record, newtons
 
 
 def run_tuning(
@@ -52,7 +52,7 @@ def run_tuning(
     require_search_space(scenario, built)
     return tune(
         built,
-        task_of(scenario),
+        scenario.mission,
         settle=time,
         norm=norm or NORMS[scenario.tune.norm],
         label=label,
@@ -103,7 +103,7 @@ def run_front(
         require_search_space(scenario, law)
     return pareto_front(
         laws,
-        task_of(scenario),
+        scenario.mission,
         settles,
         norm=norm or NORMS[scenario.tune.norm],
         method=_method(scenario, None, evaluations),
@@ -121,14 +121,7 @@ def conditions_on(scenario: Scenario, choice: LawChoice) -> CertifiedConvergence
     """
     if not has_comparison(choice.build(), BodyBounds.of(scenario.body)):
         return None
-    bounds = scenario.initial_set
-    return CertifiedConvergence(
-        task_of(scenario),
-        bounds.max_angle_deg,
-        bounds.max_rate,
-        bounds.max_weighted_rate,
-        scenario.inertia_tolerance,
-    )
+    return CertifiedConvergence(scenario.mission)
 
 
 def _method(scenario: Scenario, seed: int | None, evaluations: int | None = None) -> DifferentialEvolution:
@@ -145,7 +138,7 @@ def _method(scenario: Scenario, seed: int | None, evaluations: int | None = None
 def tuning_record(scenario: Scenario, tuned: Tuned) -> Record:
     """One search: the answer, its figures from an accurate run, and the history of the search."""
     arrays = Arrays()
-    run = tuned.run(task_of(scenario))
+    run = tuned.run(scenario.mission)
     tables = []
     if run is not None:
         rows: list[dict[str, CellEntry]] = [

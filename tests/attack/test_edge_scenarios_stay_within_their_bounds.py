@@ -1,19 +1,18 @@
 """Bodies of any size, long gaps, single windows, R(0) and k(0) far off, 100 periods: no bound is crossed."""
 
-from dataclasses import replace
 from fractions import Fraction as F
 
+import missions
 import numpy as np
 import pytest
 from edge_scenarios import edge_question
 from floor_attack import FIGURES, TOLERANCE, Adversary, crossings
 from intermit.verify.filter.answer import answer
-from intermit.verify.filter.question import FloorQuestion
 from intermit.verify.filter.worst_found import _Shape
 from problems import ADAPTIVE, J1, PERSISTENCE, paper_schedule
 
 ADVERSARY = Adversary(batches=(24, 13, 13), most_periods=12)
-PAPER = FloorQuestion(
+PAPER = missions.question(
     law=PERSISTENCE, body=J1, schedule=paper_schedule(), max_angle_deg=F(120), max_weighted_rate=F("0.3")
 )
 
@@ -47,7 +46,7 @@ def test_many():
 @pytest.mark.parametrize("law", [PERSISTENCE, ADAPTIVE])
 def test_all_time_is_a_hundred_periods_too(law):
     """The tail's repeated period bounds what is simulated at each instant of 800 s."""
-    question = replace(PAPER, law=law)
+    question = missions.other(PAPER, law=law)
     found = Adversary(batches=(8,), periods=100, most_periods=100).attack(question, 1)
     assert found.certified
     assert not crossings([found])
@@ -55,9 +54,9 @@ def test_all_time_is_a_hundred_periods_too(law):
 
 def test_a_bound_that_is_too_good_is_caught():
     """The partner that must fail: the bounds of a smaller set do not hold for a larger one."""
-    small = answer(replace(PAPER, max_angle_deg=F(60), max_weighted_rate=F(0)))
+    small = answer(missions.other(PAPER, max_angle_deg=F(60), max_weighted_rate=F(0)))
     adversary = Adversary(batches=(24,))
-    shape = _Shape(PAPER.law, PAPER.body, PAPER.schedule, PAPER.initial, None)
+    shape = _Shape(PAPER.law, PAPER.mission.body, PAPER.mission.schedule, PAPER.initial, None)
     ratios = adversary.ratios(PAPER, small, shape, shape.draw(np.random.default_rng(1), 24)).max(axis=1)
     caught = {name for name, ratio in zip(FIGURES, ratios, strict=True) if ratio > 1 + TOLERANCE}
     assert caught >= {"floor", "angle", "rate", "decay"}

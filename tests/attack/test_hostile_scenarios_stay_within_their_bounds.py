@@ -3,6 +3,7 @@
 from dataclasses import replace
 from fractions import Fraction as F
 
+import missions
 import numpy as np
 import pytest
 from hostile_scenarios import hostile_attack, hostile_question
@@ -11,7 +12,6 @@ from intermit.verify.filter.answer import answer
 from intermit.verify.filter.certify import FloorOptions, certify_floor, comparison_system
 from intermit.verify.filter.comparison import BodyBounds
 from intermit.verify.filter.convergence import analyse_convergence
-from intermit.verify.filter.question import FloorQuestion
 from intermit.verify.filter.sets import InitialSet
 from problems import J1, PERSISTENCE, paper_schedule
 
@@ -54,7 +54,7 @@ def test_a_start_inside_a_window_counts_its_gain():
 
 def test_what_does_not_shrink_is_not_scaled_down():
     """Near 2 pi the bounds of s and y are given up, and must not enter what later periods scale."""
-    q = FloorQuestion(
+    q = missions.question(
         law=PERSISTENCE,
         body=J1,
         schedule=paper_schedule(),

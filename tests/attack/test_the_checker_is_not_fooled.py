@@ -3,9 +3,9 @@
 import json
 import random
 import sys
-from dataclasses import replace
 from fractions import Fraction as F
 
+import missions
 import pytest
 from intermit.models.laws import PersistenceFilter
 from intermit.models.schedule import Hermite, Window, build_schedule
@@ -15,12 +15,11 @@ from intermit.verify.filter.answer import answer
 from intermit.verify.filter.certificate import _steps
 from intermit.verify.filter.certify import FloorOptions
 from intermit.verify.filter.persistence import PersistenceSystem
-from intermit.verify.filter.question import FloorQuestion
 from intermit.verify.filter.sets import InitialSet
 from intermit.verify.flow.stepping import Stepper
 from problems import J1, paper_schedule
 
-QUESTION = FloorQuestion(
+QUESTION = missions.question(
     law=PersistenceFilter(lambda_=F("0.525"), R0=F(1)),
     body=J1,
     schedule=paper_schedule(),
@@ -83,7 +82,9 @@ def half_blind():
     T = F(8)
     schedule = build_schedule([Window(F(1, 2), F(5, 2))], Hermite(), period=T)
     law = PersistenceFilter(lambda_=F("0.3"), R0=F(1))
-    question = replace(QUESTION, law=law, schedule=schedule, max_angle_deg=F(60), max_weighted_rate=F("0.3"))
+    question = missions.other(
+        QUESTION, law=law, schedule=schedule, max_angle_deg=F(60), max_weighted_rate=F("0.3")
+    )
     c = question.bounds.coupling
     transient = PersistenceSystem(decay=law.lambda_, initial_filter=law.R0, coupling=c)
     initial = InitialSet(0.0, question.initial.s_high, 0.0, 0.3)
@@ -108,7 +109,7 @@ def half_blind():
         "inertia": J1.exact_inertia,
         "law": {"name": law.name},
         "parameters": {"lambda": law.lambda_, "R0": law.R0},
-        "schedule": document_of(replace(question, max_angle_deg=F(1)))["parts"][0]["data"]["schedule"],
+        "schedule": document_of(missions.other(question, max_angle_deg=F(1)))["parts"][0]["data"]["schedule"],
         "initial_set": {"max_angle_deg": F(60), "max_weighted_rate": F("0.29")},
     }
     witness = {

@@ -5,13 +5,13 @@ from fractions import Fraction as F
 from typing import ClassVar
 
 import casadi as ca
+import missions
 import pytest
 from intermit.models.closed_loop import close_loop
 from intermit.models.laws import AdaptiveScaling, Control, ControllerState, Law, PersistenceFilter
 from intermit.models.laws.scaled import augmented_rate, filter_rate, scaled_torque
 from intermit.verify.filter.answer import answer
 from intermit.verify.filter.certify import FloorOptions
-from intermit.verify.filter.question import FloorQuestion
 from intermit.verify.filter.recognise import ComparedLaw, NoComparisonError, compared_law, follows_filter
 from intermit.verify.lyapunov import lyapunov_claims
 from intermit.verify.sampling import derivative_function
@@ -207,7 +207,7 @@ def test_a_class_patched_after_use_is_another_law(monkeypatch):
         compared_law(PERSISTENCE)
 
 
-QUICK = FloorQuestion(
+QUICK = missions.question(
     law=PERSISTENCE,
     body=J1,
     schedule=paper_schedule(),
@@ -219,14 +219,14 @@ QUICK = FloorQuestion(
 
 def test_claims_follow_the_equations():
     weak = with_control(PERSISTENCE, CHANGED["no torque"])
-    found = answer(replace(QUICK, law=weak))
+    found = answer(missions.other(QUICK, law=weak))
     assert [c.verdict for c in found.claims] == [Verdict.UNDECIDED] * 3
     assert all("torque does not give J Omega'" in c.reason for c in found.claims)
     assert found.converged is not None, "R is the filter still: no run stays above the converged one"
-    same = answer(replace(QUICK, law=with_control(PERSISTENCE, SAME["called through"])))
+    same = answer(missions.other(QUICK, law=with_control(PERSISTENCE, SAME["called through"])))
     assert [c.verdict for c in same.claims] == [Verdict.PROVED] * 3
     slow = with_control(PERSISTENCE, CHANGED["a filter that forgets"])
-    assert answer(replace(QUICK, law=slow)).converged is None
+    assert answer(missions.other(QUICK, law=slow)).converged is None
 
 
 def test_conditions_on_lambda_speak_of_the_family_only():

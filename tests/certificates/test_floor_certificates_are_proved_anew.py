@@ -5,6 +5,7 @@ import random
 from dataclasses import replace
 from fractions import Fraction as F
 
+import missions
 import pytest
 from intermit.models.schedule import Hermite, Window, build_schedule
 from intermit.verify import checker
@@ -13,10 +14,9 @@ from intermit.verify.filter.answer import answer
 from intermit.verify.filter.certificate import scaled_integers
 from intermit.verify.filter.certify import FloorOptions
 from intermit.verify.filter.convergence import analyse_convergence
-from intermit.verify.filter.question import FloorQuestion
 from problems import ADAPTIVE, J1, PERSISTENCE, paper_schedule
 
-QUESTION = FloorQuestion(
+QUESTION = missions.question(
     law=PERSISTENCE,
     body=J1,
     schedule=paper_schedule(),
@@ -26,18 +26,18 @@ QUESTION = FloorQuestion(
 )
 QUESTIONS = {
     "persistence": QUESTION,
-    "adaptive": replace(QUESTION, law=ADAPTIVE),
-    "rate": replace(QUESTION, max_weighted_rate=None, max_rate=F("0.1")),
-    "at rest": replace(QUESTION, max_weighted_rate=None, max_angle_deg=F(180)),
-    "tolerance": replace(QUESTION, inertia_tolerance=((F("0.01"),) * 3,) * 3),
-    "open at 0": replace(
+    "adaptive": missions.other(QUESTION, law=ADAPTIVE),
+    "rate": missions.other(QUESTION, max_weighted_rate=None, max_rate=F("0.1")),
+    "at rest": missions.other(QUESTION, max_weighted_rate=None, max_angle_deg=F(180)),
+    "tolerance": missions.other(QUESTION, inertia_tolerance=((F("0.01"),) * 3,) * 3),
+    "open at 0": missions.other(
         QUESTION,
         law=ADAPTIVE,
         max_weighted_rate=None,
         max_rate=F("0.05"),
         schedule=build_schedule([Window(F(1), F(3))], Hermite(), period=F(7)),
     ),
-    "finite": replace(
+    "finite": missions.other(
         QUESTION, schedule=build_schedule([Window(F(0), F(3)), Window(F(7), F(10))], Hermite())
     ),
 }
@@ -63,7 +63,7 @@ def test_written_certificates_are_valid(name):
 def certified(request):
     # two bins, one with its tail moved on; more moves only repeat such bins, and each mutant checks them all
     options = replace(QUESTION.options, settling_moves=1)
-    found = answer(replace(QUESTIONS[request.param], options=options))
+    found = answer(missions.other(QUESTIONS[request.param], options=options))
     (claim, *_) = found.claims
     return json.loads(certificate_text([claim.evidence[0].details["certificate"]])), found.floor
 

@@ -7,6 +7,7 @@ saturation and a clear refusal of a certificate.
 from dataclasses import replace
 from fractions import Fraction as F
 
+import missions
 import numpy as np
 import pytest
 from intermit.models.closed_loop import Saturation
@@ -25,7 +26,6 @@ from intermit.optim.peak import MultiStart, NonlinearProgram, Refinement, Standi
 from intermit.optim.peak.search.minimum_impulse import minimum_impulse
 from intermit.optim.problem import TransferProblem
 from intermit.verify.filter.answer import answer
-from intermit.verify.filter.question import FloorQuestion
 from intermit.verify.verdict import Verdict
 from problems import J1, paper_schedule
 from transfers import paper_transfer
@@ -156,8 +156,8 @@ def test_its_least_impulse_is_checked_and_switches_by_block():
 
 def test_a_torque_limit_is_proved_and_one_of_forces_left_open():
     law = PersistenceFilter(lambda_=F("0.525"), R0=F("0.15"))
-    question = FloorQuestion(law=law, body=J1, schedule=paper_schedule(), max_angle_deg=F(30))
-    generous = replace(question, torque_limit=F(10**4), torque_norm=DISC)
+    question = missions.question(law=law, body=J1, schedule=paper_schedule(), max_angle_deg=F(30))
+    generous = missions.other(question, torque_limit=F(10**4), torque_norm=DISC)
     claims = {claim.key: claim for claim in answer(generous).claims}
     assert claims["torque.limit"].verdict is Verdict.PROVED
     assert "(disc-and-axis)" in claims["torque.limit"].statement

@@ -4,21 +4,23 @@ from fractions import Fraction as F
 
 import numpy as np
 import pytest
+from intermit.models.mission import Tolerance
 from intermit.models.norms import LARGEST_COMPONENT
-from intermit.optim.comparison.measure import Task, run_law
+from intermit.optim.comparison.measure import run_law
 from intermit.optim.tuning.choose import least_passing
 from intermit.optim.tuning.evaluate import EnsembleRuns
 from intermit.optim.tuning.search import DifferentialEvolution, Outcomes
 from intermit.optim.tuning.space import SearchSpace, with_parameters
 from intermit.optim.tuning.tune import tune
+from missions import mission_from
 from problems import ADAPTIVE, J1, PERSISTENCE, TILTED, paper_schedule
 
 SETTLE = F(28)
 QUICK = DifferentialEvolution(evaluations=100, population=50, polish=0)
 
 
-def task(tolerance=F(1, 100)):
-    return Task(J1, paper_schedule(), tuple(TILTED), (F(0),) * 3, tolerance, tolerance, F(56))
+def mission(tolerance=F(1, 100)):
+    return mission_from(J1, paper_schedule(), TILTED, tolerance=Tolerance(tolerance, tolerance))
 
 
 def test_space_is_exact_and_inverts():
@@ -36,9 +38,9 @@ def test_space_is_exact_and_inverts():
 def test_evaluation_agrees_with_an_accurate_run():
     """The ensemble's peak and verdict on settling are those of the single accurate run."""
     candidates = [{"k0": F("0.2")}, {"k0": F("0.3")}, {"k0": F("0.02")}]
-    outcomes = EnsembleRuns(ADAPTIVE, task(), settle=SETTLE, norm=LARGEST_COMPONENT)(candidates)
+    outcomes = EnsembleRuns(ADAPTIVE, mission(), settle=SETTLE, norm=LARGEST_COMPONENT)(candidates)
     for candidate, peak, excess in zip(candidates, outcomes.peak, outcomes.excess, strict=True):
-        run = run_law("x", with_parameters(ADAPTIVE, candidate), task())
+        run = run_law("x", with_parameters(ADAPTIVE, candidate), mission())
         assert peak == pytest.approx(run.peak(LARGEST_COMPONENT), rel=1e-4)
         assert (excess <= 0) == (run.figures.settling is not None and run.figures.settling <= SETTLE)
 
@@ -61,10 +63,10 @@ def test_search_repeats_by_seed_and_returns_the_least():
 
 def test_conditions_turn_candidates_down():
     tuned = tune(
-        ADAPTIVE, task(), settle=SETTLE, norm=LARGEST_COMPONENT, method=QUICK, certify=lambda _: "no"
+        ADAPTIVE, mission(), settle=SETTLE, norm=LARGEST_COMPONENT, method=QUICK, certify=lambda _: "no"
     )
     assert tuned.law is None
-    assert tuned.run(task()) is None
+    assert tuned.run(mission()) is None
     assert {reason for _, reason in tuned.refused} == {"no"}
 
 
@@ -92,7 +94,7 @@ def test_few_trials_find_what_passes_where_neighbours_are_alike(edge):
 
 
 def test_impossible_settling_time_is_said_so():
-    tuned = tune(ADAPTIVE, task(), settle=F(1, 2), norm=LARGEST_COMPONENT, method=QUICK)
+    tuned = tune(ADAPTIVE, mission(), settle=F(1, 2), norm=LARGEST_COMPONENT, method=QUICK)
     assert tuned.law is None
     assert "no candidate settles" in tuned.reason
 
@@ -101,7 +103,7 @@ def test_impossible_settling_time_is_said_so():
 @pytest.mark.parametrize(("law", "most"), [(ADAPTIVE, 2.44), (PERSISTENCE, 5.5)])
 def test_tuned_laws_reach_the_known_peaks(law, most):
     """J1, 120 deg about (1, 1, 1) from rest, tolerance 1e-2, settled by 28 s, largest component."""
-    tuned = tune(law, task(), settle=SETTLE, norm=LARGEST_COMPONENT)
-    run = tuned.run(task())
+    tuned = tune(law, mission(), settle=SETTLE, norm=LARGEST_COMPONENT)
+    run = tuned.run(mission())
     assert run.figures.settling <= SETTLE
     assert run.peak(LARGEST_COMPONENT) <= most

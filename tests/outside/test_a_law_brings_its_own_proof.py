@@ -13,13 +13,13 @@ from fractions import Fraction as F
 from pathlib import Path
 
 import intermit
+import missions
 import numpy as np
 import pytest
 from intermit.cli.app import run
 from intermit.scenario.laws import LawChoice
 from intermit.verify import checker
 from intermit.verify.filter.answer import answer
-from intermit.verify.filter.question import FloorQuestion
 from intermit.verify.verdict import Verdict
 from problems import J1, paper_schedule
 
@@ -70,7 +70,7 @@ def claims_of(folder):
     choice = LawChoice(
         "user", "x", (("kappa", F("0.3")), ("delta", F("0.4"))), folder / LAW.name, "SlidingLaw", "law"
     )
-    question = FloorQuestion(
+    question = missions.question(
         law=choice.build(),
         body=J1,
         schedule=paper_schedule(),

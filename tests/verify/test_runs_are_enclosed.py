@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction as F
 from typing import ClassVar
 
 import casadi as ca
+import missions
 import numpy as np
 import pytest
 from intermit.models.laws import Control, Expression, Law, PlantSymbols, QuaternionPD, TimeSymbols
 from intermit.models.lowering import UnknownOperationError
 from intermit.models.norms import EUCLIDEAN
 from intermit.models.simulation import DOP853, simulate
-from intermit.verify.filter.question import FloorQuestion
 from intermit.verify.filter.torque_excess import refuted_limit, start_inside
 from intermit.verify.flow import run_enclosure as enclosed
 from intermit.verify.flow.run_enclosure import EnclosedRun, ExactStart, NoEnclosureError
@@ -26,7 +26,7 @@ START = ExactStart((F(1, 2),) * 4, (F(0),) * 3)
 TUMBLING = ExactStart((F(3, 5), F(0), F(4, 5), F(0)), (F("0.2"), F("-0.1"), F("0.05")))
 PD = QuaternionPD(F("0.2"), F(1))
 LAWS = [PERSISTENCE, ADAPTIVE, PD]
-QUESTION = FloorQuestion(
+QUESTION = missions.question(
     law=PERSISTENCE, body=J1, schedule=SCHEDULE, max_angle_deg=F(120), torque_limit=F(1),
     torque_norm=EUCLIDEAN,
 )  # fmt: skip
@@ -140,7 +140,7 @@ def test_limit_is_refuted_just_below_the_torque_only(law):
     t = 1.25
     size = float(np.linalg.norm(simulated(law, START, F(t))))
     for factor, verdict in ((1 - 1e-5, Verdict.REFUTED), (1 + 1e-5, Verdict.UNDECIDED)):
-        question = replace(QUESTION, law=law, torque_limit=F(size * factor))
+        question = missions.other(QUESTION, law=law, torque_limit=F(size * factor))
         claim = refuted_limit(OPEN, question, quaternion=(0.5,) * 4, rate=(F(0),) * 3, at=t)
         assert claim.verdict is verdict
         if verdict is Verdict.REFUTED:
@@ -158,4 +158,6 @@ def test_the_witness_lies_in_the_set():
     beyond = (np.cos(1.06), *(np.sin(1.06) * third,) * 3)
     assert start_inside(QUESTION, beyond, (F(0),) * 3) is None
     assert start_inside(QUESTION, edge, (F("0.01"), F(0), F(0))) is None
-    assert start_inside(replace(QUESTION, max_rate=F("0.01")), edge, (F("0.01"), F(0), F(0))) is not None
+    assert (
+        start_inside(missions.other(QUESTION, max_rate=F("0.01")), edge, (F("0.01"), F(0), F(0))) is not None
+    )

@@ -8,6 +8,7 @@ from typing import final
 
 from ...models.closed_loop import close_loop
 from ...models.laws import LAWS, Law
+from ...models.mission import Mission
 from ...models.norms import MEASURED, Norm
 from ...models.schedule import Schedule
 from ..verdict import Claim
@@ -49,26 +50,26 @@ class FloorAnswer:
 
 def answer(question: FloorQuestion) -> FloorAnswer:
     """Answer a question about the floor of R."""
-    q = question
+    q, schedule, settled = question, question.mission.schedule, question.mission.tolerance
     horizon = None
-    if q.schedule.period is None:
-        last = q.schedule.windows[:MAX_TABLE_WINDOWS][-1].off
-        horizon = min(q.horizon, q.schedule.end) if q.horizon is not None else min(last, q.schedule.end)
-    floor = certify_floor(q.law, q.bounds, q.schedule, q.initial, horizon=horizon, options=q.options)
-    tolerances = {"attitude": float(q.attitude), "rate": float(q.rate)}
+    if schedule.period is None:
+        last = schedule.windows[:MAX_TABLE_WINDOWS][-1].off
+        horizon = min(q.horizon, schedule.end) if q.horizon is not None else min(last, schedule.end)
+    floor = certify_floor(q.law, q.bounds, schedule, q.initial, horizon=horizon, options=q.options)
+    tolerances = {"attitude": float(settled.attitude), "rate": float(settled.rate)}
     if floor is not None:
         floor = tighten_settling_time(floor, **tolerances, options=q.options)
     decay = q.law.parameters.get("lambda")
     has_filter = follows_filter(close_loop(q.law))
     converged = None
-    short = q.schedule.period is not None and len(q.schedule.windows) <= MAX_PERIOD_WINDOWS
+    short = schedule.period is not None and len(schedule.windows) <= MAX_PERIOD_WINDOWS
     if short and has_filter and decay is not None and decay > 0:
-        converged = ConvergedFilter(q.schedule, decay).floor()
+        converged = ConvergedFilter(schedule, decay).floor()
     worst = None
     if q.search is not None and has_filter:
         worst = find_worst(
-            q.law, q.body, q.schedule, q.initial,
-            horizon=_search_horizon(q.schedule), max_rate=q.max_rate, search=q.search, norms=_measured(q),
+            q.law, q.mission.body, schedule, q.initial, horizon=_search_horizon(schedule),
+            max_rate=q.mission.starts.max_rate, search=q.search, norms=_measured(q.mission),
         )  # fmt: skip
     torque = found = None
     if floor is not None and floor.steps:
@@ -89,17 +90,17 @@ def answer(question: FloorQuestion) -> FloorAnswer:
         worst=worst,
         certificate=certificate,
     )
-    claims = [convergence_claim(facts, found, float(q.attitude), float(q.rate))]
+    claims = [convergence_claim(facts, found, **tolerances)]
     if floor is None or floor.system.floor_component is not None:
         claims.insert(0, floor_claim(facts))
-    if q.torque_limit is not None:
-        claims.append(torque_claim(facts, torque, q.torque_limit, q.torque_norm, q.run_peak))
+    if q.mission.limit is not None:
+        claims.append(torque_claim(facts, torque, q.mission.limit, q.run_peak))
     return FloorAnswer(tuple(claims), floor, converged, worst, torque, found)
 
 
-def _measured(q: FloorQuestion) -> tuple[Norm, ...]:
+def _measured(mission: Mission) -> tuple[Norm, ...]:
     """Norms in which the runs over the set are measured: the limit's too, if it is one of the torque."""
-    own = (q.torque_norm,) if q.torque_norm.limits_torque else ()
+    own = (mission.limit.norm,) if mission.limit is not None and mission.limit.norm.limits_torque else ()
     return tuple(dict.fromkeys((*MEASURED, *own)))
 
 

@@ -17,6 +17,7 @@ from .certify import FilterLowerBound
 from .flowpipe import Flowpipe
 
 if TYPE_CHECKING:
+    from ...models.mission import InitialSet
     from .convergence import Convergence
     from .question import FloorQuestion
     from .torque_bound import TorqueBound
@@ -47,7 +48,7 @@ def floor_certificate(
     torque : TorqueBound, optional
         Its bound of |g u| is claimed too.
     """
-    q, data = question, question_data(question)
+    settled, data = question.mission.tolerance, question_data(question)
     system = floor.system
     claim: dict[str, object] = {}
     if system.floor_component is not None:
@@ -61,7 +62,7 @@ def floor_certificate(
         claim["ratio_from"] = max(t.start for t in tails if t is not None)
     if convergence is not None and convergence.settling is not None:
         time = Fraction(convergence.settling)
-        claim["settling"] = {"time": time, "attitude": q.attitude, "rate": q.rate}
+        claim["settling"] = {"time": time, "attitude": settled.attitude, "rate": settled.rate}
     if torque is not None:
         claim["torque"] = Fraction(torque.applied)
     kind = WITHOUT_FILTER if system.floor_component is None else FLOOR
@@ -91,27 +92,26 @@ def question_data(question: FloorQuestion) -> dict[str, object]:
     NotAlgebraicError
         If the law uses more than + - * /.
     """
-    q = question
+    q, mission = question, question.mission
     data: dict[str, object] = {
-        "inertia": q.body.exact_inertia,
+        "inertia": mission.body.exact_inertia,
         "law": law_form(close_loop(q.law)),
         "parameters": q.law.parameters,
         "initial": {state.name: state.initial for state in q.law.controller_states},
-        "schedule": schedule_data(q.schedule),
-        "initial_set": set_data(q),
+        "schedule": schedule_data(mission.schedule),
+        "initial_set": set_data(mission.starts),
     }
-    if q.inertia_tolerance is not None:
-        data["inertia_tolerance"] = q.inertia_tolerance
+    if mission.inertia_tolerance is not None:
+        data["inertia_tolerance"] = mission.inertia_tolerance
     return data
 
 
-def set_data(question: FloorQuestion) -> dict[str, object]:
+def set_data(starts: InitialSet) -> dict[str, object]:
     """Write down the initial set; a bound that it does not have is left out."""
-    q = question
     bounds = {
-        "max_angle_deg": q.max_angle_deg,
-        "max_rate": q.max_rate,
-        "max_weighted_rate": q.max_weighted_rate,
+        "max_angle_deg": starts.max_angle_deg,
+        "max_rate": starts.max_rate,
+        "max_weighted_rate": starts.max_weighted_rate,
     }
     return {name: value for name, value in bounds.items() if value is not None}
 

@@ -13,6 +13,7 @@ from math import degrees, isfinite
 from typing import final
 
 from ...models.apart import apart
+from ...models.mission import TorqueLimit
 from ...models.norms import Norm
 from ..certificates.format import Certificate
 from ..exact.rounding import digits_above, digits_below
@@ -135,11 +136,15 @@ def convergence_claim(facts: FloorFacts, found: Convergence | None, attitude: fl
     )
 
 
+def limit_words(limit: TorqueLimit) -> str:
+    """A torque limit as a statement."""
+    return f"|g u| <= {float(limit.torque):g} {limit.norm.unit} ({limit.norm.key})"
+
+
 def torque_claim(
     facts: FloorFacts,
     bound: TorqueBound | None,
-    limit: Fraction,
-    norm: Norm,
+    limit: TorqueLimit,
     seen: float | None = None,
 ) -> Claim:
     """Claim "torque.limit": the applied torque g u stays within the limit.
@@ -147,8 +152,8 @@ def torque_claim(
     `seen` is the largest applied torque of the scenario's own run in that norm, N m, for the reason.
     """
     title = "applied torque within its limit"
-    floor = facts.floor
-    statement = f"|g u| <= {float(limit):g} {norm.unit} ({norm.key})"
+    floor, norm = facts.floor, limit.norm
+    statement = limit_words(limit)
     if floor is None:
         return _undecided("torque.limit", title, statement, facts.no_system, facts.no_system_step)
     where = f"from every start with {floor.initial.description}"
@@ -165,10 +170,9 @@ def torque_claim(
         step = "give the limit as one of the torque's components or length, N m"
         return _undecided("torque.limit", title, statement, reason, step, quantities)
     # the torque's length, which is bounded, is never below its peak
-    if Fraction(bound.applied) <= limit:
-        margin = Quantity(
-            "torque_reserve", float(limit) - bound.applied, float(limit) - bound.applied, "N m", "reserve"
-        )
+    if Fraction(bound.applied) <= limit.torque:
+        reserve = float(limit.torque) - bound.applied
+        margin = Quantity("torque_reserve", reserve, reserve, "N m", "reserve")
         return Claim(
             key="torque.limit",
             title=title,
@@ -183,8 +187,8 @@ def torque_claim(
     largest = _largest_found(facts, norm, seen)
     if largest is not None:
         value, whose = largest
-        word = "exceeds it too" if value > limit else "does not"
-        reason += f"; the largest torque {whose}, {apart(value, limit, digits=4)[0]} N m, {word}"
+        word = "exceeds it too" if value > limit.torque else "does not"
+        reason += f"; the largest torque {whose}, {apart(value, limit.torque, digits=4)[0]} N m, {word}"
         if value > 0:
             reason += f" (the bound is {bound.applied / value:.2g} times it)"
     gains = ", ".join(floor.law.parameters)

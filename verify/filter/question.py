@@ -11,8 +11,7 @@ import casadi as ca
 from ...models.closed_loop import close_loop
 from ...models.laws import Law
 from ...models.lowering import FIELD, UnknownOperationError, evaluate, walk
-from ...models.norms import LARGEST_COMPONENT, Norm
-from ...models.rigid_body import RigidBody
+from ...models.mission import Mission
 from ...models.schedule import Schedule
 from .certify import FloorOptions
 from .comparison import BodyBounds
@@ -27,14 +26,10 @@ class FloorQuestion:
 
     Attributes
     ----------
-    law, body, schedule : the closed loop
-    inertia_tolerance : largest deviation of each entry of J, kg m^2, or None
-    max_angle_deg : bound on 2 acos(b0), deg, of the initial set
-    max_rate, max_weighted_rate : bounds on |w(0)| (rad/s) and |Omega(0)|_J; both None is at rest
-    attitude, rate : tolerances on |bv| and |w| (rad/s) for the settling time
-    torque_limit, torque_norm : limit on the applied torque, N m, or None
+    law, mission : the closed loop and what it is to do, on a body that the controller knows (`uncertainty` is
+        not asked about)
     run_floor : least R of the scenario's own run and that run's horizon, s, or None
-    run_peak : largest applied torque of that run in `torque_norm`, N m, or None
+    run_peak : largest applied torque of that run in the norm of the mission's limit, or None
     horizon : end of the time asked about where the table is finite, s; None is the table's
         end, or its 400th window
     search : how hard to look for the worst start; None skips the search
@@ -42,16 +37,7 @@ class FloorQuestion:
     """
 
     law: Law
-    body: RigidBody
-    schedule: Schedule
-    max_angle_deg: Fraction
-    max_rate: Fraction | None = None
-    max_weighted_rate: Fraction | None = None
-    inertia_tolerance: tuple[tuple[Fraction, ...], ...] | None = None
-    attitude: Fraction = Fraction(1, 100)
-    rate: Fraction = Fraction(1, 100)
-    torque_limit: Fraction | None = None
-    torque_norm: Norm = LARGEST_COMPONENT
+    mission: Mission
     run_floor: tuple[float, float] | None = None
     run_peak: float | None = None
     horizon: Fraction | None = None
@@ -61,18 +47,19 @@ class FloorQuestion:
     @property
     def bounds(self) -> BodyBounds:
         """Bounds of the principal inertias, the tolerance included."""
-        bounds = BodyBounds.of(self.body)
-        return bounds if self.inertia_tolerance is None else bounds.widened(self.inertia_tolerance)
+        bounds, tolerance = BodyBounds.of(self.mission.body), self.mission.inertia_tolerance
+        return bounds if tolerance is None else bounds.widened(tolerance)
 
     @property
     def initial(self) -> InitialSet:
         """The initial set in the comparison system's variables."""
+        starts = self.mission.starts
         return InitialSet.from_bounds(
             self.bounds,
-            max_angle_deg=self.max_angle_deg,
-            max_rate=self.max_rate,
-            max_weighted_rate=self.max_weighted_rate,
-            gain_term=initial_gain_term(self.law, self.schedule),
+            max_angle_deg=starts.max_angle_deg,
+            max_rate=starts.max_rate,
+            max_weighted_rate=starts.max_weighted_rate,
+            gain_term=initial_gain_term(self.law, self.mission.schedule),
         )
 
 

@@ -14,6 +14,7 @@ from ..exact.ball import ball, float_above, float_below
 from ..exact.direction import rational_quaternion
 from ..flow.run_enclosure import EnclosedRun, ExactStart, NoEnclosureError
 from ..verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict, Witness
+from .claims import limit_words
 from .question import FloorQuestion, initial_gain_term
 
 INWARD = (0.0, 1e-9, 1e-6)
@@ -44,19 +45,18 @@ def refuted_limit(
         As it came where it is not the torque itself that is limited, where the start is not certainly in
         the set, where the run could not be enclosed, or where its enclosure does not exclude the limit.
     """
-    q, limit = question, question.torque_limit
+    q, mission, limit = question, question.mission, question.mission.limit
     start = start_inside(q, quaternion, rate)
     if start is None or limit is None:
         return claim
     instant = Fraction(at).limit_denominator(10**6)
     try:
-        torque = EnclosedRun(q.law, q.body, start).torque_at(q.schedule, instant)
+        torque = EnclosedRun(q.law, mission.body, start).torque_at(mission.schedule, instant)
     except (NoEnclosureError, UnknownOperationError):
         return claim
-    if not q.torque_norm.limits_torque:
+    if not limit.norm.limits_torque:
         return claim
-    size = _size_below(torque, q.torque_norm)
-    excess = size - ball(limit)
+    excess = _size_below(torque, limit.norm) - ball(limit.torque)
     if not excess > 0:
         return claim
     values: dict[str, float | list[float]] = {
@@ -71,8 +71,7 @@ def refuted_limit(
     how = "the run from this start, enclosed by interval Taylor steps in ball arithmetic"
     return replace(
         claim,
-        statement=f"|g u| <= {float(limit):g} N m ({q.torque_norm.key}) from every start "
-        f"with {q.initial.description}",
+        statement=f"{limit_words(limit)} from every start with {q.initial.description}",
         verdict=Verdict.REFUTED,
         witness=Witness("from this start of the set, at this time", values, excess_found),
         evidence=(*claim.evidence, Evidence(EvidenceKind.WITNESS, how, source=claim.source)),
@@ -99,7 +98,7 @@ def start_inside(
 
 def _is_inside(question: FloorQuestion, start: ExactStart) -> bool:
     """Whether the start satisfies every bound of the set, decided in exact or ball arithmetic."""
-    q, w = question, start.rate
+    q, w = question.mission.starts, start.rate
     least_b0 = (ball(q.max_angle_deg) / 360).cos_pi()
     if q.max_angle_deg < 360 and not ball(start.quaternion[0]) >= least_b0:
         return False
@@ -108,7 +107,8 @@ def _is_inside(question: FloorQuestion, start: ExactStart) -> bool:
         return square <= (q.max_rate or Fraction(0)) ** 2
     if q.max_rate is not None and square > q.max_rate**2:
         return False
-    gain, J = 2 * initial_gain_term(q.law, q.schedule), q.body.exact_inertia
+    mission = question.mission
+    gain, J = 2 * initial_gain_term(question.law, mission.schedule), mission.body.exact_inertia
     Omega = [x + gain * b for x, b in zip(w, start.quaternion[1:], strict=True)]
     weighted = sum((Omega[i] * J[i][j] * Omega[j] for i in range(3) for j in range(3)), Fraction(0))
     return weighted <= q.max_weighted_rate**2

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from fractions import Fraction as F
 
+import missions
 import numpy as np
 import pytest
 from intermit.models.ensemble import MetricOptions, simulate_ensemble
@@ -12,13 +13,12 @@ from intermit.verify.certificates import certificate_text
 from intermit.verify.filter.answer import answer
 from intermit.verify.filter.certify import FloorOptions, certify_floor
 from intermit.verify.filter.comparison import BodyBounds
-from intermit.verify.filter.question import FloorQuestion
 from intermit.verify.filter.sets import InitialSet
 from intermit.verify.verdict import Verdict
 from problems import ADAPTIVE, J1, TILTED, paper_schedule
 
 LAW = replace(ADAPTIVE, k0=F(0))
-QUESTION = FloorQuestion(
+QUESTION = missions.question(
     law=LAW, body=J1, schedule=paper_schedule(), max_angle_deg=F(60), options=FloorOptions(max_bins=2)
 )
 
@@ -38,7 +38,7 @@ def test_a_start_away_from_the_target_has_a_floor_for_all_time(rate):
 def test_the_checker_follows_a_gain_that_is_held_at_zero():
     windows = [Window(F(8 * k) + F("0.01"), F(8 * k) + F("3.21")) for k in range(2)]
     table = build_schedule(windows, Hermite())
-    found = answer(replace(QUESTION, schedule=table))
+    found = answer(missions.other(QUESTION, schedule=table))
     (claim, *_) = found.claims
     assert claim.verdict is Verdict.PROVED
     assert any("held" in step.modes for w in found.floor.flowpipes for step in w.steps)

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from fractions import Fraction as F
 
+import missions
 import numpy as np
 import pytest
 from floor_attack import TOLERANCE, over_time_ratios, seen_over_time
@@ -11,7 +12,6 @@ from intermit.models.schedule import Hermite, Window, build_schedule
 from intermit.verify.filter import over_time
 from intermit.verify.filter.certify import FloorOptions, certify_floor
 from intermit.verify.filter.over_time import angle_above, bounds_over_time
-from intermit.verify.filter.question import FloorQuestion
 from intermit.verify.filter.torque_bound import BoxColumns
 from intermit.verify.filter.worst_found import _Shape
 from problems import ADAPTIVE, J1, PERSISTENCE
@@ -20,7 +20,7 @@ HORIZON = F(80)
 """Ten periods; the tails of both laws begin before the sixth."""
 OPENS_AT_ONE = build_schedule([Window(F(1), F("4.2"))], Hermite(), period=F(8))
 """Closed at first, so that |w| = |Omega| there and its bound is tight."""
-QUESTION = FloorQuestion(
+QUESTION = missions.question(
     law=PERSISTENCE, body=J1, schedule=OPENS_AT_ONE, max_angle_deg=F(120), max_weighted_rate=F("0.3")
 )
 
@@ -28,29 +28,35 @@ QUESTION = FloorQuestion(
 def floor_of(question):
     q = question
     options = FloorOptions(max_bins=4)
-    return certify_floor(q.law, q.bounds, q.schedule, q.initial, options=options)
+    return certify_floor(q.law, q.bounds, q.mission.schedule, q.initial, options=options)
 
 
 def attack(question, count):
     """Bounds, times and what runs from the set show; the first starts at the fastest rate the set allows."""
     bounds = bounds_over_time(floor_of(question), HORIZON)
-    shape = _Shape(question.law, question.body, question.schedule, question.initial, question.max_rate)
+    shape = _Shape(
+        question.law,
+        question.mission.body,
+        question.mission.schedule,
+        question.initial,
+        question.mission.starts.max_rate,
+    )
     points = shape.draw(np.random.default_rng(4), count)
     states = shape.states(points)
-    principal, axes = np.linalg.eigh(question.body.inertia)
+    principal, axes = np.linalg.eigh(question.mission.body.inertia)
     states[0, 4:7] = 0.3 * (1 - 1e-9) / np.sqrt(principal[0]) * axes[:, 0]
     times = np.unique(np.concatenate([bounds.time, bounds.time + 0.05, [float(HORIZON)]]))
     runs = simulate_ensemble(
-        question.law, question.body, question.schedule, states, horizon=HORIZON, times=times
+        question.law, question.mission.body, question.mission.schedule, states, horizon=HORIZON, times=times
     )
     assert shape.inside(states).all()
-    seen = seen_over_time(question, question.body, times, runs.states)
+    seen = seen_over_time(question, question.mission.body, times, runs.states)
     return bounds, times, seen
 
 
 @pytest.fixture(scope="module", params=[PERSISTENCE, ADAPTIVE], ids=["persistence", "adaptive"])
 def attacked(request):
-    return attack(replace(QUESTION, law=request.param), 8)
+    return attack(missions.other(QUESTION, law=request.param), 8)
 
 
 def test_no_run_crosses_a_bound_at_any_time(attacked):
@@ -113,9 +119,9 @@ def test_many_periods_in_one_cell_need_only_the_first(monkeypatch):
 
 def test_a_certificate_that_ends_early_bounds_nothing_beyond():
     windows = [Window(F(8 * k), F(8 * k) + F("3.2")) for k in range(3)]
-    question = replace(QUESTION, schedule=build_schedule(windows, Hermite()))
+    question = missions.other(QUESTION, schedule=build_schedule(windows, Hermite()))
     floor = certify_floor(
-        question.law, question.bounds, question.schedule, question.initial, horizon=F("19.2")
+        question.law, question.bounds, question.mission.schedule, question.initial, horizon=F("19.2")
     )
     assert bounds_over_time(floor, F("19.2")) is not None
     assert bounds_over_time(floor, F("19.3")) is None

@@ -2,10 +2,10 @@
 
 from fractions import Fraction as F
 
+import missions
 import pytest
 from intermit.models.schedule import Ramps, Window, build_schedule
 from intermit.verify.filter.answer import MAX_TABLE_WINDOWS, answer
-from intermit.verify.filter.question import FloorQuestion
 from intermit.verify.schedule.excitation import excitation_claim
 from intermit.verify.schedule.facts import schedule_claims
 from intermit.verify.verdict import Verdict
@@ -18,7 +18,7 @@ def table(count, **options):
 
 
 def claims(schedule):
-    question = FloorQuestion(
+    question = missions.question(
         law=PERSISTENCE, body=J1, schedule=schedule, max_angle_deg=F(90), torque_limit=F(1000)
     )
     return {claim.key: claim for claim in answer(question).claims}
