@@ -100,15 +100,18 @@ class ComponentsArgument:
         Half widths beta of that part.
     bounds : ComponentBounds
         Bounds of the components, valid up to the trial peak.
-    instant : Fraction
-        Where the transfer is split, s.
+    coast : Coast
+        From the start to where the transfer is split; at rest the start itself.
+    end : Fraction
+        Upper bound of the gauge and of each component of the momentum at the end.
     """
 
     momenta: MomentumSet
     path: PathBound
     box: Widths
     bounds: ComponentBounds
-    instant: Fraction
+    coast: Coast
+    end: Fraction
 
 
 Argument = MomentumArgument | PathArgument | ComponentsArgument

@@ -10,6 +10,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import final
 
+import numpy as np
+
+from ...verify.exact.rounding import rounded_down
 from ..problem import TransferProblem
 from .argument import ComponentsArgument, NamedBound
 from .potential.path import PathOptions
@@ -17,11 +20,10 @@ from .prepare import Measured, Prepared
 from .proof import by_momentum, by_path, path_of
 from .sets.gauge import GaugeSet, invariant_set, longest_vertex
 from .sets.momentum_sets import UnitBall
-from .windows.components import TransferSides, Widths, component_bounds, peak_from_components
+from .windows.components import ComponentBounds, Widths, component_bounds, peak_from_components
+from .windows.drift import box_for
+from .windows.split import Split, Splits
 from .windows.travel import WindowTravel
-
-TRIALS = (1.0, 1.03, 1.07, 1.12, 1.18, 1.25, 1.35, 1.5, 1.75)
-"""Trial peaks of the bound by components over the best other bound: any are valid, the best is kept."""
 
 
 @final
@@ -90,7 +92,7 @@ def certified_lower_bound(problem: TransferProblem, *, options: PathOptions | No
     Euclidean norm: momentum, and shortest path in the metric |J w|, from the start or, if it
     tumbles, from where a coast leads. Largest component and thrusters: the Euclidean bounds divided by
     the longest torque of unit peak, the invariant set (momentum and path) and, for the largest
-    component from rest to exact rest, components.
+    component, each component by itself.
     """
     options = options or PathOptions()
     prepared, ball = Prepared(problem), UnitBall(problem.body)
@@ -117,8 +119,7 @@ def _by_invariant_set(prepared: Prepared, options: PathOptions) -> list[NamedBou
     momenta = invariant_set(problem.body, problem.norm)
     names = ("momentum in the invariant set", "invariant set")
     result = _momentum_and_path(prepared.measured(momenta), options, names)
-    at_rest = problem.starts_at_rest and not problem.terminal.rate
-    if problem.norm.is_cube and at_rest and options.components:
+    if problem.norm.is_cube and options.components:
         result += _by_components(problem, momenta, options, max(bound.exact for bound in result))
     return result
 
@@ -130,17 +131,36 @@ def _by_components(
     windows = WindowTravel(problem.window)
     if windows.total == 0 or known <= 0:
         return []
-    sides = TransferSides(problem.window, windows.instant(windows.total / 2))
-    first = component_bounds(momenta, sides, Fraction(float(known) * options.trial))
-    share = Fraction(options.share)
-    # Steps of 1/50 are fine enough, and let sweeps over windows share their potentials.
-    near = [max(Fraction(round((1 + share * (B - 1)) * 50), 50), Fraction(1)) for B in first.B]
-    if all(b >= r for b, r in zip(near, first.widths, strict=True)):
+    splits, trial = Splits(problem, momenta), float(known) * options.trial
+    split = splits.at_rest(windows.instant(windows.total / 2))
+    bounds = component_bounds(momenta, split.sides, trial)
+    if not problem.starts_at_rest:
+        moving = splits.promising(bounds, options.share, float(known))
+        if moving is None:
+            return []
+        split, bounds = moving, component_bounds(momenta, moving.sides, trial)
+    beta = box_for(split.sides.components(bounds.rates, trial), options.share)
+    if problem.starts_at_rest and all(b >= r for b, r in zip(beta, bounds.widths, strict=True)):
         return []
-    beta: Widths = (near[0], near[1], near[2])
-    path = path_of(problem, problem.attitude, momenta.with_box(beta), options)
-    trials = (Fraction(float(known) * factor) for factor in TRIALS)
-    found = [component_bounds(momenta, sides, trial) for trial in trials]
-    peaks = [peak_from_components(sides, bounds, beta, path.travel) for bounds in found]
-    peak, bounds = max(zip(peaks, found, strict=True), key=lambda pair: pair[0])
-    return [NamedBound("components", peak, ComponentsArgument(momenta, path, beta, bounds, sides.instant))]
+    path = path_of(problem, split.coast.attitude, momenta.with_box(beta), options)
+    peak, bounds = _largest_peak(momenta, split, beta, rounded_down(path.travel - split.slack), bounds)
+    name = "components" if problem.starts_at_rest else "components after a coast"
+    argument = ComponentsArgument(momenta, path, beta, bounds, split.coast, splits.end)
+    return [NamedBound(name, Fraction(peak), argument)]
+
+
+def _largest_peak(
+    momenta: GaugeSet, split: Split, beta: Widths, travel: float, bounds: ComponentBounds
+) -> tuple[float, ComponentBounds]:
+    """Largest peak found for a travel: any trial at or above it is valid, the nearest is the sharpest."""
+    best, box = (0.0, bounds), np.array([float(b) for b in beta])
+    for _ in range(6):
+        peak = peak_from_components(split.sides, bounds, beta, travel)
+        if peak > best[0]:
+            best = peak, bounds
+        allowed = split.sides.allowed(bounds.trial, bounds.rates, box)
+        near = bounds.trial * travel / allowed if allowed else 0.0  # were all in proportion
+        if near <= 0 or best[0] < bounds.trial < best[0] * 1.002:
+            break
+        bounds = component_bounds(momenta, split.sides, near * 1.001)
+    return best

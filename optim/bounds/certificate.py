@@ -50,8 +50,8 @@ def peak_certificate(problem: TransferProblem, bound: NamedBound) -> Certificate
         if isinstance(argument, PathArgument):
             exact = _allowing(argument, travel, witness)
         else:
-            exact = bound.exact * _LESS
-            witness |= _component_witness(argument)
+            exact = bound.exact * (1 - Fraction(1, 2**60))
+            witness |= _component_witness(argument, problem)
     peak = Fraction(rounded_down(min(exact, bound.exact)))
     return Certificate(KIND, transfer_data(problem), {"peak": peak}, witness) if peak > 0 else None
 
@@ -151,17 +151,20 @@ def _allowing(argument: PathArgument, travel: Fraction, witness: dict[str, objec
     )
 
 
-def _component_witness(argument: ComponentsArgument) -> dict[str, object]:
-    bounds = argument.bounds
-    return {
+def _component_witness(argument: ComponentsArgument, problem: TransferProblem) -> dict[str, object]:
+    bounds, coast = argument.bounds, argument.coast
+    witness: dict[str, object] = {
         "argument": "components",
-        "instant": argument.instant,
-        "trial": bounds.trial,
+        "instant": coast.until,
+        "end": argument.end,
         "box": argument.box,
         "bounds": bounds.B,
         "widths": bounds.width_multipliers,
         "multipliers": bounds.multipliers,
     }
+    if not problem.starts_at_rest:
+        witness["coast"] = {"attitude": coast.attitude, "turn": coast.turn}
+    return witness
 
 
 def _separations(problem: TransferProblem, path: PathBound, scale: Fraction) -> list[dict[str, object]]:

@@ -73,9 +73,25 @@ class Departure:
 
 
 def coast_attitude(J: Matrix, q: Vector, H: Vector, until: Fraction) -> tuple[Vector, Fraction]:
-    """Quaternion after free motion from q with body momentum H, and a bound of the distance from it.
+    """Quaternion after free motion from q with body momentum H, and a bound of the distance from it."""
+    end = coast_nodes(J, q, H, until, 1)[-1]
+    return end.attitude, end.error
 
-    In steps of the time x in [0, 1], with g = H/sigma and u = B g, B = sigma step J^-1,
+
+@dataclass(frozen=True)
+class CoastNode:
+    """A quaternion and a body momentum near those of a coast, and bounds of their distances from it."""
+
+    attitude: Vector
+    error: Fraction
+    momentum: Vector
+    off: Fraction
+
+
+def coast_nodes(J: Matrix, q: Vector, H: Vector, step: Fraction, count: int) -> list[CoastNode]:
+    """Free motion from q with body momentum H != 0, after 0, 1, ... count steps.
+
+    In parts of the time x in [0, 1], with g = H/sigma and u = B g, B = sigma part J^-1,
         g' = g x u,        q' = q (0, u)/2,
     Taylor polynomials in units of 2^-PEAK_COAST_BITS, B too, however long its numbers are. What they miss
     of the equations (the products beyond their degree, and every rounding) is a defect; |g| and the length
@@ -86,27 +102,31 @@ def coast_attitude(J: Matrix, q: Vector, H: Vector, until: Fraction) -> tuple[Ve
     size = length_interval(H)[1]
     sigma = Fraction(2) ** magnitude(size)
     fastest = root_interval(sum((x * x for row in inverse for x in row), Fraction(0)))[1]
-    steps = math.ceil(8 * fastest * size * until)
-    require(steps <= PEAK_COAST_STEPS, "the coast turns too far")
+    parts = math.ceil(8 * fastest * size * step)
+    require(parts * count <= PEAK_COAST_STEPS, "the coast turns too far")
     require(1 < 2**64 * max(map(abs, q)) < 2**128, "the start quaternion is too long or too short")
-    B = [[math.floor(x * sigma * until / steps * one) for x in row] for row in inverse]
-    b, size = fastest * sigma * until / steps, size / sigma
+    B = [[math.floor(x * sigma * step / parts * one) for x in row] for row in inverse]
+    b, size = fastest * sigma * step / parts, size / sigma
     g, p = ([math.floor(x * one) for x in v] for v in ([h / sigma for h in H], q))
     off, error = Fraction(4, one), Fraction(4, one)
-    for _ in range(steps):
+    nodes = [CoastNode(q, Fraction(0), H, Fraction(0))]
+    for number in range(1, parts * count + 1):
         G, Q, U = coast_series(B, g, p)
-        sizes = [[Fraction(sum(map(abs, c)), one) for c in v] for v in (G, Q, U)]
-        reach, length = (sum(v, Fraction(0)) for v in sizes[:2])
+        sizes = [[sum(map(abs, c)) for c in v] for v in (G, Q, U)]
+        reach, length = (Fraction(sum(v), one) for v in sizes[:2])
         rounded = Fraction(4 * (PEAK_COAST_ORDER + 1) ** 2, one)
         grown = b * (size + reach)
         require(grown <= 1, "a step of the coast is too long")
         rounded *= 1 + reach  # the rounding of B grows with what it acts on
-        off += rounded * (1 + reach) + beyond(sizes[0], sizes[2])
+        off += rounded * (1 + reach) + Fraction(beyond(sizes[0], sizes[2]), one * one)
         off = rounded_up(off * (1 + grown + grown**2) * one) / one
-        error += rounded * (1 + length) + beyond(sizes[1], sizes[2]) + length * b * off
+        error += rounded * (1 + length) + Fraction(beyond(sizes[1], sizes[2]), one * one) + length * b * off
         error = rounded_up(error * one) / one
         g, p = ([sum(c) for c in zip(*v, strict=True)] for v in (G, Q))
-    return [Fraction(c, one) for c in p], error
+        if number % parts == 0:
+            reached = [Fraction(c, one) for c in p]
+            nodes.append(CoastNode(reached, error, [sigma * Fraction(c, one) for c in g], sigma * off))
+    return nodes
 
 
 def coast_series(B: list[list[int]], g: list[int], p: list[int]) -> tuple[list[list[int]], ...]:
@@ -125,10 +145,10 @@ def coast_series(B: list[list[int]], g: list[int], p: list[int]) -> tuple[list[l
     return G, Q, U
 
 
-def beyond(x: Vector, y: Vector) -> Fraction:
-    """Sum of x_i y_j over i + j >= the order: bound of what a product has beyond the series."""
+def beyond(x: list[int], y: list[int]) -> int:
+    """Upper bound of what a product has beyond the series, in squares of the unit."""
     n = PEAK_COAST_ORDER
-    return sum((a * sum(y[max(n - i, 0) :], Fraction(0)) for i, a in enumerate(x)), Fraction(0))
+    return sum(a * sum(y[max(n - i, 0) :]) for i, a in enumerate(x))
 
 
 def require_turn(reached: Vector, radius: Fraction, q: Vector, turn: Fraction) -> None:

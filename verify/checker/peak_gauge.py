@@ -28,12 +28,13 @@ class Gauge:
         self.box: Vector | None = None
 
     def with_box(self, box: Vector) -> Gauge:
-        """Return the part with |H_i| <= box[i]."""
+        """Return the part with |H_i| <= box[i]; all of that box if the set is a ball."""
         require(all(b > 0 for b in box), "the half widths of a box must be positive")
+        corner = sum((b * b for b in box), Fraction(0)) if len(self.rows) == 1 else Fraction(0)
         part = Gauge.__new__(Gauge)
         part.J, part.inverse, part.box = self.J, self.inverse, box
         part.rows = self.rows + [axis_matrix(i) for i in range(3)]
-        part.levels = self.levels + [b * b for b in box]
+        part.levels = [max(self.levels[0], corner), *self.levels[1:]] + [b * b for b in box]
         return part
 
     def size(self, H: Vector) -> tuple[Fraction, Fraction]:

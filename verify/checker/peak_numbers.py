@@ -21,7 +21,7 @@ from .exact_numbers import Matrix, Vector, require
 #               x of m^-1 q with max over K of |phi'| <= rate wherever a path of travel below D can
 #               pass, a spherical ellipse {F >= 0, |x| <= outer}. The way may be counted from where a
 #               coast leads; see `Departure`.
-#   components  (cube, from rest to rest) K is cut down by |H_i| <= beta_i; see `require_components`.
+#   components  (cube) K is cut down by |H_i| <= beta_i; see `require_components` and `peak_drift`.
 # Maxima over K go by multipliers: G <= sum l_k M_k gives H'G H <= sum l_k L_k.
 # Polynomials live on boxes as integers in units of 2^-PEAK_BITS; every rounding is counted. Floats
 # only choose multipliers, which are then rounded and checked in integers.
@@ -30,6 +30,7 @@ from .exact_numbers import Matrix, Vector, require
 PEAK_BITS = 100
 PEAK_BOXES = 150_000
 PEAK_CELLS = 96
+PEAK_DRIFT_NODES = 48
 PEAK_DEGREE = 12
 PEAK_COAST_BITS, PEAK_COAST_ORDER, PEAK_COAST_STEPS, PEAK_COAST_CELLS = 192, 40, 400, 32
 PEAK_DATA_BITS = 4096

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterator
 from fractions import Fraction
 from itertools import pairwise
 
 from .bernstein import from_powers, power_compose, power_primitive, power_product
 from .exact_numbers import Vector, require
-from .peak_numbers import PEAK_CELLS, require_short, rounded_up
+from .peak_numbers import require_short
 from .reading import Node
 
 
@@ -62,23 +61,19 @@ class PeakWindow:
         inner = self._at(s, 1)
         return inner + self.first[-1] * (self.knots[-1] - s) - (self.second[-1] - inner)
 
+    def up(self, s: Fraction) -> Fraction:
+        """int_0^s w."""
+        return self._at(s, 0)
+
     def opened(self, s: Fraction) -> Fraction:
         """int_0^s up."""
         return self._at(s, 1)
+
+    def squared(self, s: Fraction) -> Fraction:
+        """int_0^s up^2."""
+        return self._at(s, 2)
 
     def moment(self, a: Fraction, b: Fraction, about: Fraction) -> Fraction:
         """int_a^b w(t) (about - t) dt, by parts."""
         ends = self._at(b, 0) * (about - b) - self._at(a, 0) * (about - a)
         return ends + self._at(b, 1) - self._at(a, 1)
-
-    def cells(self, until: Fraction) -> Iterator[tuple[Fraction, Fraction]]:
-        """Cut [0, until]: on each cell int up, and a bound of (int_0^t up^2)/up, both rounded up."""
-        inside = {k for k in self.knots if 0 < k < until}
-        edges = sorted({until * k / PEAK_CELLS for k in range(PEAK_CELLS + 1)} | inside)
-        for a, b in pairwise(edges):
-            up, ratio = self._at(a, 0), self._at(b, 1)  # up rises: int up^2 <= up int up
-            if up > 0:
-                ratio = min(ratio, self._at(b, 2) / up)
-            area = self._at(b, 1) - self._at(a, 1)
-            if area > 0:
-                yield rounded_up(area), rounded_up(ratio)

@@ -33,6 +33,14 @@ def grid_near(value: Fraction, bits: int) -> Fraction:
     return Fraction(round(value * 2**bits), 2**bits)
 
 
+def significant_above(value: Fraction, bits: int) -> Fraction:
+    """Return a number of so many significant bits, or one more, that is >= value >= 0: whatever its unit."""
+    if not value:
+        return value
+    unit = Fraction(2) ** (value.numerator.bit_length() - value.denominator.bit_length() - bits)
+    return ceil(value / unit) * unit
+
+
 def digits_below(value: float, digits: int) -> Decimal:
     """Return the largest number of so many significant digits that is <= value."""
     return Context(prec=digits, rounding=ROUND_FLOOR).create_decimal(Decimal(value))

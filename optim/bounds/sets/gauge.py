@@ -69,14 +69,15 @@ class GaugeSet(MomentumSet):
         return tuple(zip(self.matrices, self.levels, strict=True))
 
     @cached_property
-    def _float_rows(self) -> tuple[Array, Array]:
+    def float_rows(self) -> tuple[Array, Array]:
+        """Matrices (k, 3, 3) and levels (k,) in floats."""
         M = np.array([[[float(x) for x in row] for row in matrix] for matrix in self.matrices])
         return M, np.array([float(g) for g in self.levels])
 
     @cached_property
     def table(self) -> SupportTable:
         """Support function at the nodes of a triangulated octahedron."""
-        return SupportTable(*self._float_rows)
+        return SupportTable(*self.float_rows)
 
     def support_above(self, v: Array) -> Array:
         """Less of the piecewise linear interpolation and of the nearest node's ellipsoid."""
@@ -103,7 +104,7 @@ class GaugeSet(MomentumSet):
     def straight_travel(self, axis: Array, angle: float) -> float:
         """Gauge of J axis times angle."""
         H = self.body.inertia @ axis / np.linalg.norm(axis)
-        M, g = self._float_rows
+        M, g = self.float_rows
         return float(np.sqrt((np.einsum("i,kij,j->k", H, M, H) / g).max()) * angle)
 
     def _squares(self, momentum: Vector) -> list[Fraction]:
@@ -136,12 +137,19 @@ class GaugeSet(MomentumSet):
         return ("gauge", self.body.exact_inertia, self.matrices, self.levels)
 
     def with_box(self, half_widths: Sequence[Fraction]) -> GaugeSet:
-        """Return the part with |H_i| <= half_widths[i]."""
-        matrices, levels = list(self.matrices), list(self.levels)
+        """Return the part with |H_i| <= half_widths[i]; with equal inertias all of that box, if larger.
+
+        A ball that cuts off little more than the corners would make every proof long.
+        """
+        matrices, levels, speed = list(self.matrices), list(self.levels), self._speed
+        reach = sum((Fraction(width) ** 2 for width in half_widths), Fraction(0))
+        if len(levels) == 1 and reach > levels[0]:
+            speed = square_root(speed**2 * reach / levels[0])[1]
+            levels[0] = reach
         for i, width in enumerate(half_widths):
             matrices.append(unit(i))
             levels.append(Fraction(width) ** 2)
-        return GaugeSet(self.body, tuple(matrices), tuple(levels), self._speed)
+        return GaugeSet(self.body, tuple(matrices), tuple(levels), speed)
 
 
 def invariant_set(body: RigidBody, norm: Norm) -> GaugeSet:

@@ -55,23 +55,23 @@ def coasts(problem: TransferProblem) -> tuple[Coast, ...]:
         return tuple(found)
     step = Fraction(2) ** floor(log2(problem.horizon / _INSTANTS))
     instants = [step * k for k in range(floor(problem.horizon / step) + 1)]
-    run = EnclosedRun(FreeMotion(), problem.body, ExactStart(_near_unit(problem.attitude), problem.rate))
+    run = EnclosedRun(FreeMotion(), problem.body, ExactStart(near_unit(problem.attitude), problem.rate))
     for start, end in pairwise(instants):
         try:
             run.cross(Phase(start, end, start, (ZERO,)))
         except NoEnclosureError:
             break
-        found.append(_coast(end, run.state[:4]))
+        found.append(rounded_coast(end, run.state[:4]))
     return tuple(found)
 
 
-def _near_unit(q: Quaternion) -> Quaternion:
+def near_unit(q: Quaternion) -> Quaternion:
     """Same attitude, of length near 1."""
     length = Fraction(float(np.linalg.norm([float(c) for c in q])))
     return q[0] / length, q[1] / length, q[2] / length, q[3] / length
 
 
-def _coast(until: Fraction, balls: list[Any]) -> Coast:
+def rounded_coast(until: Fraction, balls: list[Any]) -> Coast:
     """Round an enclosed quaternion, near unit length.
 
     Within a distance r of a quaternion of length l directions differ by an arc of at most

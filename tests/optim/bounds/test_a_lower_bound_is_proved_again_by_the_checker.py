@@ -20,6 +20,7 @@ WINDOW = PiecewisePolynomial(
 )
 THRUSTERS = thrusters([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
 AWAY = (Fraction("0.03"), Fraction("0.02"), Fraction("0.04"))
+SLOWLY = (Fraction("0.002"), Fraction("-0.001"), Fraction("0.003"))
 QUICK = PathOptions(degree=3, tolerance=1e-2)
 """Weak potentials: the proofs are the same, and short."""
 
@@ -33,6 +34,10 @@ CASES = {
     "path": problem(),
     "path in the invariant set": problem(norm=THRUSTERS),
     "components": problem(norm=LARGEST_COMPONENT),
+    "components after a coast": problem(norm=LARGEST_COMPONENT, rate=SLOWLY),
+    "components to a slow end": problem(
+        norm=LARGEST_COMPONENT, rate=SLOWLY, terminal=Terminal(rate=Fraction("0.0001"))
+    ),
     "path after a coast": problem(rate=AWAY),
     "path in the invariant set after a coast": problem(norm=THRUSTERS, rate=AWAY),
     "momentum": problem(norm=LARGEST_COMPONENT, rate=(Fraction(-1), Fraction(2), Fraction(0))),
@@ -46,7 +51,8 @@ def bounds():
 
 def shown(bounds, key):
     """The largest bound, or that of the name in the key."""
-    return next((b for b in bounds[key].all if b.name == key.removeprefix("path in the ")), bounds[key].best)
+    name = key.removeprefix("path in the ").replace("to a slow end", "after a coast")
+    return next((b for b in bounds[key].all if b.name == name), bounds[key].best)
 
 
 @pytest.fixture(scope="module")
@@ -90,11 +96,14 @@ def test_each_argument_occurs(texts):
         "path": "path",
         "path in the invariant set": "path",
         "components": "components",
+        "components after a coast": "components",
+        "components to a slow end": "components",
         "path after a coast": "path",
         "path in the invariant set after a coast": "path",
         "momentum": "momentum",
     }
-    assert [key for key, text in texts.items() if '"coast"' in text] == [k for k in CASES if "coast" in k]
+    coasted = [key for key in CASES if "coast" in key or "slow" in key]
+    assert [key for key, text in texts.items() if '"coast"' in text] == coasted
 
 
 def test_every_bound_listed_has_a_certificate(bounds):
@@ -139,13 +148,24 @@ COMPONENTS = [
     *TRAVELLED,
     ((*WITNESS, "rows", 1, 0), "1.01"),
     ((*WITNESS, "rows", 2, 0), "0.99"),
-    ((*WITNESS, "trial"), "0.9"),
-    ((*WITNESS, "trial"), "1.2"),
     ((*WITNESS, "bounds", 0), "0.95"),
     ((*WITNESS, "box", 1), "0.97"),
     ((*WITNESS, "box", 1), "1.1"),
     ((*WITNESS, "widths", 0, 0), "0.9"),
     ((*WITNESS, "multipliers", 0, 0), "0.5"),
+]
+MOVING = [
+    *COMPONENTS,
+    ((*WITNESS, "coast", "attitude", 0), "1.001"),
+    ((*WITNESS, "coast", "turn"), "0"),
+    ((*WITNESS, "instant"), "0.99"),
+    ((*WITNESS, "instant"), "1.01"),
+    (("data", "transfer", "rate", 0), "1.01"),
+]
+SLOW_END = [
+    *MOVING,
+    ((*WITNESS, "end"), "0.99"),
+    (("data", "transfer", "tolerance", "rate"), "1.01"),
 ]
 
 
@@ -154,6 +174,8 @@ COMPONENTS = [
     [("path", *one) for one in TRAVELLED]
     + [("path in the invariant set", *one) for one in TRAVELLED]
     + [("components", *one) for one in COMPONENTS]
+    + [("components after a coast", *one) for one in MOVING]
+    + [("components to a slow end", *one) for one in SLOW_END]
     + [("path after a coast", *one) for one in COASTED]
     + [("path in the invariant set after a coast", *one) for one in COASTED]
     + [("path in the invariant set after a coast", (*WITNESS, "coast", "growth", 1), "0.99")]

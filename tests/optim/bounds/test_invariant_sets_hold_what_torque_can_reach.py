@@ -9,13 +9,13 @@ from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import PiecewisePolynomial
 from intermit.optim.bounds.sets.gauge import invariant_set
 from intermit.optim.bounds.windows.components import (
-    TransferSides,
     component_bounds,
     gyroscopic_bound,
     gyroscopic_form,
     peak_from_components,
 )
-from intermit.optim.bounds.windows.travel import WindowTravel
+from intermit.optim.bounds.windows.split import Splits
+from intermit.optim.problem import TransferProblem
 
 J1 = RigidBody.from_rows([["3.05", "0.14", "0.05"], ["0.14", "2.66", "0.12"], ["0.05", "0.12", "2.18"]])
 LONG = RigidBody.from_rows([[1, 0, 0], [0, 2, 0], [0, 0, 3]])
@@ -103,28 +103,31 @@ def test_gyroscopic_bound_is_above_samples():
         assert seen <= bound <= 2 * seen
 
 
+def halves(momenta):
+    """Both sides of a turn of LONG from rest, cut in the middle."""
+    turn = (Fraction(1), Fraction(1), Fraction(0), Fraction(0))
+    problem = TransferProblem(body=LONG, window=ONE, attitude=turn, norm=LARGEST_COMPONENT)
+    return Splits(problem, momenta).at_rest(Fraction(5)).sides
+
+
 def test_components_stay_within_their_bounds():
-    windows = WindowTravel(ONE)
-    sides = TransferSides(ONE, windows.instant(windows.total / 2))
-    trial = Fraction(1, 10)
+    trial = 0.1
     momenta = invariant_set(LONG, LARGEST_COMPONENT)
-    bounds = component_bounds(momenta, sides, trial)
+    bounds = component_bounds(momenta, halves(momenta), trial)
     random = np.random.default_rng(7)
     time = 0.02 * np.arange(251)
     for _ in range(20):
-        torque = float(trial) * np.repeat(random.choice([-1.0, 1.0], (25, 3)), 10, axis=0)
+        torque = trial * np.repeat(random.choice([-1.0, 1.0], (25, 3)), 10, axis=0)
         H = momentum_history(LONG, torque, 0.02, 250)
         for axis in range(3):
-            assert (np.abs(H[:, axis]) <= float(bounds.B[axis] * trial) * time + 1e-9).all()
+            assert (np.abs(H[:, axis]) <= float(bounds.B[axis]) * trial * time + 1e-9).all()
 
 
 def test_a_peak_from_components_never_exceeds_its_trial():
-    windows = WindowTravel(ONE)
-    sides = TransferSides(ONE, windows.instant(windows.total / 2))
     momenta = invariant_set(LONG, LARGEST_COMPONENT)
-    beta = (Fraction(1), Fraction(1), Fraction(1))
-    for trial in (Fraction(1, 100), Fraction(1, 10), Fraction(1)):
+    sides, beta = halves(momenta), (Fraction(1), Fraction(1), Fraction(1))
+    for trial in (0.01, 0.1, 1.0):
         bounds = component_bounds(momenta, sides, trial)
-        p = peak_from_components(sides, bounds, beta, Fraction(1))
-        assert p <= trial
-        assert sides.travel_above(p, bounds.kappa, bounds.widths, beta) <= 1
+        p = peak_from_components(sides, bounds, beta, 1.0)
+        assert 0 < p <= trial
+        assert sides.allowed(p, bounds.rates, np.ones(3)) <= 1
