@@ -11,13 +11,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from math import floor
 from typing import final
 
 from .. import checker
 from ..certificates.format import Certificate, certificate_text
 from ..certificates.program import NotAlgebraicError
 from ..exact.matrix import Matrix, Rows
-from ..exact.polynomial import NotPolynomialError, Ring
+from ..exact.polynomial import NotPolynomialError
+from .balance import Balance, Problem, balance
 from .candidates import Candidate
 from .conditions import vertices
 from .forms import inertia_data, law_form, parameter_data, storage_form
@@ -28,7 +30,7 @@ from .sums_of_squares import Target, split
 BACKING_OFF = (Fraction(1, 10**7), Fraction(1, 10**6), Fraction(1, 10**5), Fraction(1, 1000), Fraction(1, 20))
 """Steps back from the solver's best rate, relative to it, tried in turn."""
 NEARLY_ZERO = 1e-7
-"""Rates (1/s) below this are tried as 0."""
+"""Rates below this, in the unit of the search, are tried as 0."""
 
 
 @final
@@ -95,19 +97,21 @@ def certify_decay(
         raise NoCertificateError(str(error)) from None
     if candidate.right_side is None and rate is None and not _is_nonnegative_reference(problems):
         rate = Fraction(0)  # beside a W that may be negative a rate would say nothing
-    best = _best_rate(problems) if rate is None else float(rate)
+    units = balance(problems)
+    scaled = [units.scaled(problem) for problem in problems]
+    best = _best_rate(scaled) if rate is None else float(rate / units.unit)
     if best is None:
         raise NoCertificateError("-V' was not found to be a sum of squares of its own degree on the sphere")
-    for tried in _rates(best) if rate is None else iter([rate]):
-        grams = _all_grams(problems, tried)
+    for tried in _rates(best, units.unit) if rate is None else iter([rate]):
+        grams = _all_grams(scaled, tried / units.unit, units)
         if grams is not None:
             return _accepted(data, claim, tried, grams, problems[0][0].names)
+    ended = best * float(units.unit)
     raise NoCertificateError(
-        f"no Gram matrix could be rounded at or below {best:.6g} 1/s, where the solver's search ended"
+        f"no Gram matrix could be rounded at or below {ended:.6g} 1/s, where the solver's search ended"
     )
 
 
-Problem = tuple[Ring, list[Target]]
 Term = tuple[Mapping[str, int], Gram]
 
 
@@ -141,22 +145,26 @@ def _best_rate(problems: list[Problem]) -> float | None:
 def _is_nonnegative_reference(problems: list[Problem]) -> bool:
     """Whether W is a sum of squares, exactly, and not zero: only then does V' <= -rho W bound V' by more."""
     targets = [(ring, target) for ring, problem in problems for target in problem if target.reference]
-    alone = ((ring, replace(t, fixed=t.reference, reference={})) for ring, t in targets)
-    return bool(targets) and all(find_gram(ring, t, Fraction(0), None) is not None for ring, t in alone)
+    alone = [(ring, [replace(t, fixed=t.reference, reference={})]) for ring, t in targets]
+    scaled = (balance([problem]).scaled(problem) for problem in alone)
+    return bool(targets) and all(find_gram(ring, t, Fraction(0), None) is not None for ring, (t,) in scaled)
 
 
-def _rates(best: float) -> Iterator[Fraction]:
-    """Rates to try, from just below the best down to zero, with few digits."""
+def _rates(best: float, unit: Fraction) -> Iterator[Fraction]:
+    """Rates to try, 1/s, from just below the best down to zero, with few digits."""
     if best > NEARLY_ZERO:
         for step in BACKING_OFF:
-            rate = Fraction(best) * (1 - step)
-            digits = 10 ** (9 - min(0, int(f"{best:e}".split("e")[1])))
-            yield Fraction(rate.numerator * digits // rate.denominator, digits)
+            rate = Fraction(best) * unit * (1 - step)
+            digits = Fraction(10) ** (9 - int(f"{float(rate):e}".split("e")[1]))
+            yield floor(rate * digits) / digits
     yield Fraction(0)
 
 
-def _all_grams(problems: list[Problem], rate: Fraction) -> list[list[Term]] | None:
-    """Gram matrices of every problem at one rate; None as soon as one problem has none."""
+def _all_grams(problems: list[Problem], rate: Fraction, units: Balance) -> list[list[Term]] | None:
+    """Gram matrices of every problem at one rate; None as soon as one problem has none.
+
+    Problems and rate are in the units given, the matrices in those of the claim.
+    """
     result: list[list[Term]] = []
     faces: dict[int, Face] = {}
     for ring, targets in problems:
@@ -171,7 +179,7 @@ def _all_grams(problems: list[Problem], rate: Fraction) -> list[list[Term]] | No
                     return None
                 grams, faces[number] = found
             done.append((target, grams))
-            terms += [(target.common, gram) for gram in grams]
+            terms += [(target.common, units.restored(target, gram)) for gram in grams]
         result.append(terms)
     return result
 

@@ -22,7 +22,7 @@ from .sums_of_squares import Square, Target, Terms, square_terms
 
 FACES = 4
 """How often a search may restrict itself to a face of the cone."""
-FLAT = 1e-6
+FLAT = 3e-7
 """Least eigenvalue, relative to the coefficients, below which a Gram matrix counts as singular."""
 
 
