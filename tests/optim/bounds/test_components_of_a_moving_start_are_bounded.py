@@ -11,7 +11,7 @@ from intermit.models.norms import LARGEST_COMPONENT
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import PiecewisePolynomial
 from intermit.optim.bounds import PathOptions, certified_lower_bound
-from intermit.optim.bounds.bound import path_of
+from intermit.optim.bounds.proof import path_of
 from intermit.optim.bounds.sets.gauge import invariant_set
 from intermit.optim.bounds.windows.components import component_bounds, peak_from_components
 from intermit.optim.bounds.windows.drift import Ways, box_for
