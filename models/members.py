@@ -38,9 +38,14 @@ def draw_members(
 
     Parameters
     ----------
-    law, believed : what is flown, and the inertia that it computes with
-    count : how many
-    rng : source of chance
+    law, believed : Law, RigidBody
+        What is flown, and the inertia that it computes with.
+    uncertainty : Uncertainty
+        What the members may differ by.
+    count : int
+        How many.
+    rng : np.random.Generator
+        Source of chance.
     """
     return [_draw(law, believed, uncertainty, rng) for _ in range(count)]
 

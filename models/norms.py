@@ -268,19 +268,6 @@ MEASURED = tuple(NORMS.values())
 """Norms in which the torque of a run is measured unless others are asked for."""
 
 
-def norm_named(word: str) -> Norm:
-    """The norm of that word.
-
-    Raises
-    ------
-    ValueError
-        If there is none.
-    """
-    if word not in NORMS:
-        raise ValueError(f"expected a norm, {' or '.join(NORMS)}: received {word!r}")
-    return NORMS[word]
-
-
 def thrusters(axes: Sequence[Sequence[Fraction | int | float | str]]) -> Norm:
     """Norm of one-sided thrusters: thruster j gives the torque f_j axes[j] with 0 <= f_j <= p.
 

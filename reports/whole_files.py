@@ -12,10 +12,14 @@ def write_whole(path: Path, data: bytes | str, *, new: bool = False, named: Path
 
     Parameters
     ----------
-    path : where it goes
-    data : text is written as UTF-8
-    new : refuse a place that is taken
-    named : what an error calls it; the path itself without it
+    path : Path
+        Where it goes.
+    data : bytes | str
+        Text is written as UTF-8.
+    new : bool
+        Refuse a place that is taken.
+    named : Path, optional
+        What an error calls it; the path itself without it.
 
     Raises
     ------

@@ -75,7 +75,14 @@ def turn_freely(
 
     Parameters
     ----------
-    through : integrates a phase from a state
+    phase : Phase
+        The coast.
+    body : Array
+        Attitude and rate at its start, (7,).
+    inertia : Array
+        (3, 3), kg m^2.
+    through : Callable[[Phase, Array], Passage]
+        Integrates a phase from a state.
 
     Raises
     ------
@@ -106,8 +113,14 @@ def coast(phase: Phase, state: Array, decay: Array, turn: Callable[[Array], Pass
 
     Parameters
     ----------
-    decay : (m,), of `coasting_decay`
-    turn : carries the body's own state (7,) through the phase
+    phase : Phase
+        The phase, g = 0 in it.
+    state : Array
+        State at its start, (n,).
+    decay : Array
+        What `coasting_decay` gives, (m,).
+    turn : Callable[[Array], Passage]
+        Carries the body's own state (7,) through the phase.
     """
     start, length = float(phase.start), float(phase.end - phase.start)
     body, controller = state[:PLANT], state[PLANT:]

@@ -41,9 +41,14 @@ def read_figures(
 
     Parameters
     ----------
-    attitude, rate : tolerances on |bv| and on |w| (rad/s), Euclidean, within which it has settled
-    norms : in which the torque is measured
-    until_settled : torque figures end at the settling time, where there is one, not at the horizon
+    trajectory : Trajectory
+        The run.
+    attitude, rate : Fraction
+        Tolerances on |bv| and on |w| (rad/s), Euclidean, within which it has settled.
+    until_settled : bool
+        Torque figures end at the settling time, where there is one, not at the horizon.
+    norms : Sequence[Norm]
+        In which the torque is measured.
     """
     settling = settling_time(trajectory, attitude=float(attitude), rate=float(rate))
     has_filter = "R" in trajectory.loop.controller_states

@@ -28,8 +28,10 @@ def rate_period(inertia: Array, rate: Array) -> float:
 
     Parameters
     ----------
-    inertia : (3, 3), kg m^2
-    rate : (3,), rad/s, not zero
+    inertia : Array
+        (3, 3), kg m^2.
+    rate : Array
+        (3,), rad/s, not zero.
     """
     from scipy.special import ellipk
 

@@ -18,9 +18,14 @@ def least_passing(points: Array, passes: Callable[[int], bool], *, attempts: int
 
     Parameters
     ----------
-    points : (m, n) candidates in the unit cube, best first
-    passes : whether a candidate, by its number, meets the condition
-    hint : a candidate that may well pass; it is tried after the best one
+    points : Array
+        (m, n) candidates in the unit cube, best first.
+    passes : Callable[[int], bool]
+        Whether a candidate, by its number, meets the condition.
+    attempts : int
+        Most candidates that are tried.
+    hint : int
+        A candidate that may well pass; it is tried after the best one.
     """
     count, best = len(points), len(points)
     away: dict[bool, Array] = {known: np.full(count, np.inf) for known in (True, False)}

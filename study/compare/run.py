@@ -93,7 +93,8 @@ class Comparison(Shown):
 
         Parameters
         ----------
-        norm : word of the norm of the torque; the scenario's first without one
+        norm : str, optional
+            Word of the norm of the torque; the scenario's first without one.
 
         Returns
         -------

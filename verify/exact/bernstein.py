@@ -270,7 +270,8 @@ def least_value(polynomials: Iterable[poly.Coefficients], tolerance: Fraction) -
 
     Parameters
     ----------
-    polynomials : iterable of coefficient tuples, lowest power first; at least one
+    polynomials : Iterable[poly.Coefficients]
+        Coefficient tuples, lowest power first; at least one.
     tolerance : Fraction
         Largest high - low, > 0.
     """

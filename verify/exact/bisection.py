@@ -100,9 +100,12 @@ def best_first(
 
     Parameters
     ----------
-    parts : tuples whose first entry is a lower bound of something on them; at least one
-    split : returns the parts of a part
-    enough : whether to stop, asked of the part with the least bound
+    parts : Iterable[Bounded]
+        Tuples whose first entry is a lower bound of something on them; at least one.
+    split : Callable[[Bounded], Iterable[Bounded]]
+        Returns the parts of a part.
+    enough : Callable[[Bounded], bool]
+        Whether to stop, asked of the part with the least bound.
 
     Returns
     -------
@@ -127,10 +130,14 @@ def bisected(
 
     Parameters
     ----------
-    holds : the question
-    low, high : it holds at `low` and not at `high`
-    steps : most halvings; None for as many as `relative` takes
-    relative : stop once the interval is no longer than this share of its upper end
+    holds : Callable[[T], bool]
+        The question.
+    low, high : T
+        It holds at `low` and not at `high`.
+    steps : int, optional
+        Most halvings; None for as many as `relative` takes.
+    relative : Fraction
+        Stop once the interval is no longer than this share of its upper end.
     """
     done = 0
     while done != steps and high - low > relative * high:

@@ -90,8 +90,22 @@ def find_worst(
 
     Parameters
     ----------
-    max_rate : further bound on |w(0)| of the set, rad/s, if it has one
-    norms : in which the runs' torques are measured
+    law : Law
+        The law that is simulated.
+    body : RigidBody
+        The body.
+    schedule : Schedule
+        Its windows.
+    initial : InitialSet
+        Set of starts that is searched.
+    horizon : Fraction
+        End of every run, s.
+    max_rate : Fraction, optional
+        Further bound on |w(0)| of the set, rad/s, if it has one.
+    search : Search, optional
+        How hard to search; its defaults without one.
+    norms : Sequence[Norm]
+        In which the runs' torques are measured.
     """
     options = search or Search()
     rng = np.random.default_rng(options.seed)

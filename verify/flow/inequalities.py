@@ -43,9 +43,14 @@ class StatedSystem(ComparisonSystem):
 
         Parameters
         ----------
-        G : g^2
-        x : components in the order of `names`
-        n : the numbers given when the system was built, in the same arithmetic
+        G : Any
+            g^2.
+        x : Sequence[Any]
+            Components in the order of `names`.
+        modes : Modes
+            Which of the inequalities hold, as `choices` gives them.
+        n : Any
+            The numbers given when the system was built, in the same arithmetic.
         """
 
     @abstractmethod

@@ -95,11 +95,16 @@ def vanishes(
 
     Parameters
     ----------
-    loop : whose symbols it uses
-    expression : any shape
-    extra : further symbols that it uses, by name
-    positive : names that may be divided by
-    sphere : whether it need be zero for |beta| = 1 only
+    loop : ClosedLoop
+        Whose symbols it uses.
+    expression : Expression
+        Any shape.
+    extra : Mapping[str, Expression], optional
+        Further symbols that it uses, by name.
+    positive : Sequence[str]
+        Names that may be divided by.
+    sphere : bool
+        Whether it need be zero for |beta| = 1 only.
 
     Raises
     ------

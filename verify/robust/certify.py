@@ -33,7 +33,16 @@ def robust_flowpipe(
 
     Parameters
     ----------
-    horizon : end of the time asked for, s; None asks for all time, of a periodic schedule
+    system : RobustPersistenceSystem
+        The loop on every body, as inequalities.
+    schedule : Schedule
+        Its windows.
+    initial : InitialSet
+        Set of starts that is covered.
+    horizon : Fraction, optional
+        End of the time asked for, s; None asks for all time, of a periodic schedule.
+    options : FloorOptions
+        How hard to try.
 
     Returns
     -------

@@ -34,9 +34,12 @@ def robust_claims(
 
     Parameters
     ----------
-    question : the loop as the controller knows it, and what it does not know
-    found : figures of extreme members, shown beside what is proved
-    margins : look for how much more of each channel is proved
+    question : RobustQuestion
+        The loop as the controller knows it, and what it does not know.
+    found : MembersFound, optional
+        Figures of extreme members, shown beside what is proved.
+    margins : bool
+        Look for how much more of each channel is proved.
 
     Returns
     -------

@@ -32,8 +32,10 @@ def channel_margins(
 
     Parameters
     ----------
-    question : one whose claims are proved
-    is_proved : tries another
+    question : RobustQuestion
+        One whose claims are proved.
+    is_proved : Callable[[RobustQuestion], bool]
+        Tries another.
     """
     for name in question.uncertainty.channels:
 
