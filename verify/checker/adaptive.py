@@ -21,6 +21,7 @@ from .comparison import (
     angle_factor,
     comparison,
     initial_values,
+    rate_factor,
 )
 from .exact_numbers import HALF, Vector, require, show
 from .floor_bounds import Box, sliding_command
@@ -94,7 +95,7 @@ class AdaptiveScaling(Comparison):
         y, s, k, r = (x[name] for name in ("y", "s", "k", "r"))
         Y, Z, L, U = (x[name] for name in ("Y", "Z", "L", "U"))
         c, lam, gamma, a = self.setting.c, self.lam, self.gamma, self.a
-        require(len(modes) == 2 and modes[0] in ("kept", "zero"), "unknown form of the inequalities")
+        require(len(modes) in (2, 3) and modes[0] in ("kept", "zero"), "unknown form of the inequalities")
         S, T = s * s, Z * Z
         low_room, high_room = TWO - S, TWO - T
         yield "s^2 <= 2", high_room
@@ -106,7 +107,7 @@ class AdaptiveScaling(Comparison):
             yield "slope of s", -dx["s"] - (Y * angle_factor(S)).times(c) - low_pull * s
         else:
             yield "s = 0", -s
-        yield "slope of Z", dx["Z"] - (Y * angle_factor(T)).times(c) + high_pull * Z
+        yield "slope of Z", dx["Z"] - (Y * rate_factor(T, modes)).times(c) + high_pull * Z
         yield "slope of r", G * high_room - r.times(lam) - dx["r"]
         yield "slope of U", dx["U"] + U.times(lam) - G * low_room
         for room, square in ((low_room, S), (high_room, T)):

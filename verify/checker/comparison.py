@@ -145,6 +145,18 @@ def angle_factor(S: Form) -> Form:
     return ONE - S.times(Fraction(1, 4)) - (S * S).times(Fraction(1, 32))
 
 
+TANGENTS = 64
+
+
+def rate_factor(S: Form, modes: Sequence[str]) -> Form:
+    """A(S), or the tangent that a step's third word names: sqrt(1 - S/2) <= (t^2 + 1 - S/2)/(2 t), t > 0."""
+    if len(modes) < 3:
+        return angle_factor(S)
+    require(modes[2].isdecimal() and 1 <= int(modes[2]) <= TANGENTS, "unknown tangent of sqrt(1 - S/2)")
+    t = Fraction(int(modes[2]), TANGENTS)
+    return Form.constant((t * t + 1) / (2 * t)) - S.times(1 / (4 * t))
+
+
 def comparison(system: type[System]) -> type[System]:
     """Enter a system into the table of the part that is read."""
     enter("systems", system.name, system)

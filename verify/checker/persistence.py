@@ -20,9 +20,9 @@ from .comparison import (
     Comparison,
     Conditions,
     Setting,
-    angle_factor,
     comparison,
     initial_values,
+    rate_factor,
 )
 from .exact_numbers import HALF, Vector, require, show
 from .floor_bounds import Box, root_above, sliding_command
@@ -79,7 +79,7 @@ class PersistenceFilter(Comparison):
         """Every bound's sign and slope; the floor in the form that the step names."""
         K, y, s, v, z, r = (x[name] for name in ("K", "y", "s", "v", "z", "r"))
         c, lam, R0 = self.setting.c, self.lam, self.R0
-        require(len(modes) == 2 and modes[0] in ("angle", "blind"), "unknown form of the inequalities")
+        require(len(modes) in (2, 3) and modes[0] in ("angle", "blind"), "unknown form of the inequalities")
         yield "K >= 0", K
         yield "slope of K", K.times(lam) - (G * K * K).times(2) - dx["K"]
         if modes[0] == "angle":
@@ -88,7 +88,7 @@ class PersistenceFilter(Comparison):
             yield "s^2 <= 2", TWO - S
             yield "s >= 0", s
             yield "slope of y", dx["y"] + pull * y
-            drift = y if tail else y * angle_factor(S)
+            drift = y if tail else y * rate_factor(S, modes)
             yield "slope of s", dx["s"] - drift.times(c) + pull * s
         else:
             yield "slope of y", dx["y"]

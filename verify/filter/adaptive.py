@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
+from math import sqrt
 from typing import Any, final
 
 import numpy as np
@@ -35,6 +36,8 @@ from .comparison import (
     at_least_tiny,
     drives_attitude,
     filter_scale,
+    tangent_factor,
+    tangent_near,
 )
 from .law_system import LawSystem
 from .proofs import CASCADE, ComparisonProof, attitude_measures
@@ -153,7 +156,7 @@ class AdaptiveSystem(LawSystem):
         Z = at_least_tiny(Z)
         return (*low, k, r, drives_attitude(Y, Z, self.floats.lam / self.coupling), Z, L, U)
 
-    def choices(self, state: Sequence[float], peak: float) -> Sequence[Modes]:
+    def choices(self, state: Sequence[float], peak: float, length: float = 0.0) -> Sequence[Modes]:
         """Whether the lower bound of s is kept; how to bound f from above, best now first; k held last."""
         _, s, k, _, Y, Z, _, _ = state
         a = self.floats.a
@@ -168,7 +171,10 @@ class AdaptiveSystem(LawSystem):
             tops = ["split"]
         keeps = ("kept", "zero") if s > MIN_ANGLE_BOUND_SHARE * Z else ("zero",)
         learns: list[Modes] = [(), ("held",)] if peak > 0 and k < MIN_GAIN_SHARE * self.floats.lam else [()]
-        return tuple((keep, top, *held) for keep in keeps for held in learns for top in tops)
+        t = tangent_near(Z, self.coupling * Y * sqrt(1.0 - 0.5 * Z * Z), length)
+        if not t:
+            return ()
+        return tuple((keep, top, t, *held) for keep in keeps for held in learns for top in tops)
 
     def _f_top(self, y: float) -> float:
         return 2.0 * float(self.floats.a) * (1.0 + y * y / (4.0 * float(self.floats.a))) ** 2
@@ -197,7 +203,7 @@ class AdaptiveSystem(LawSystem):
             ),
             "r": -lam * r + G * room_high,
             "Y": -high_pull * Y,
-            "Z": c * Y * angle_factor(T) - high_pull * Z,
+            "Z": c * Y * tangent_factor(T, modes[2]) - high_pull * Z,
             "L": gamma * U * G * f,
             "U": -lam * U + G * room_low,
         }

@@ -43,9 +43,9 @@ class AdaptiveTailSystem(StatedSystem, PeriodicSystem):
         growth = (end["L"] - start["L"]) / (1.0 - theta * theta * ROUND_UP)
         return {"L": (start["L"] + growth * ROUND_UP * ROUND_UP) * ROUND_UP}
 
-    def choices(self, state: Sequence[float], peak: float) -> Sequence[Modes]:
+    def choices(self, state: Sequence[float], peak: float, length: float = 0.0) -> Sequence[Modes]:
         """One form only."""
-        del peak
+        del peak, length
         return (("tail",),) if state[3] ** 2 < ATTITUDE_BOUND_LOST else ()
 
     def slopes(self, G: Any, x: Sequence[Any], modes: Modes, n: Any) -> dict[str, Slope]:

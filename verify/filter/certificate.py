@@ -142,7 +142,7 @@ def _steps(steps: Iterable[Step]) -> list[dict[str, object]]:
     return [
         {
             "until": step.stop,
-            "forms": list(step.modes[:2]),  # what follows only says how the step was proposed
+            "forms": list(step.modes[:3]),  # what follows only says how the step was proposed
             "bounds": {name: scaled_integers(c) for name, c in step.controls.items()},
         }
         for step in steps

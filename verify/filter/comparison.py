@@ -25,6 +25,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from math import sqrt
 from typing import Any, final
 
 from ...models.rigid_body import RigidBody
@@ -86,6 +87,34 @@ class BodyBounds:
 def angle_factor(S: Any) -> Any:
     """A(S) = 1 - S/4 - S^2/32, an upper bound of sqrt(1 - S/2) on 0 <= S <= 2, in any arithmetic."""
     return 1 - S * (8 + S) / 32
+
+
+TANGENTS = 64
+"""Tangents of the angle factor touch it at multiples of 1/TANGENTS."""
+
+
+MAX_FALL = 1 / 3
+"""Share of sqrt(1 - S/2) that may be lost over a step with one tangent."""
+
+
+def tangent_factor(S: Any, form: str) -> Any:
+    """Return an upper bound of u = sqrt(1 - S/2): u <= (t^2 + 1 - S/2)/(2 t) for any t > 0, equal at u = t.
+
+    `form` says t, as 64 t. Near S = 2, where a body has turned almost all the way round, A(S) is loose.
+    """
+    t = Fraction(int(form), TANGENTS)
+    return (t * t + 1) / (2 * t) - S / (4 * t)
+
+
+def tangent_near(s: float, drift: float, length: float) -> str:
+    """Name the tangent for a step of this length (s) from s = sqrt(1 - b0), whose slope is `drift` times u.
+
+    Empty where u falls by more than a third: one tangent would be loose, and the step is better cut.
+    """
+    u, ahead = (sqrt(max(1.0 - 0.5 * x * x, 0.0)) for x in (s, s + 0.5 * drift * length))
+    if ahead < (1.0 - 0.5 * MAX_FALL) * u and length > 0.0:
+        return ""
+    return str(min(max(round(TANGENTS * ahead), 1), TANGENTS))
 
 
 def at_least_tiny(value: float) -> float:

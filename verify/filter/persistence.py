@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
+from math import sqrt
 from typing import Any, final
 
 import casadi as ca
@@ -33,10 +34,11 @@ from .comparison import (
     NO_BOUND,
     ROUND_UP,
     BodyBounds,
-    angle_factor,
     at_least_tiny,
     drives_attitude,
     filter_scale,
+    tangent_factor,
+    tangent_near,
 )
 from .law_system import LawSystem
 from .proofs import CASCADE, ComparisonProof, attitude_measures
@@ -118,19 +120,23 @@ class PersistenceSystem(LawSystem):
             (np.minimum(square * (1 + 2 * c.b0_low), 0.0), 3 * square),
         ], c.g * c.high
 
-    def choices(self, state: Sequence[float], peak: float) -> Sequence[Modes]:
+    def choices(self, state: Sequence[float], peak: float, length: float = 0.0) -> Sequence[Modes]:
         """Order the bounds of the angle by their value now; none where r < 0, which no step size mends."""
-        _, _, s, _, z, r = state
+        _, y, s, _, z, r = state
         if r < 0.0:
             return ()
         angle = "angle" if s * s < ATTITUDE_BOUND_LOST else "blind"
+        drift = self.coupling * y * sqrt(max(1.0 - 0.5 * s * s, 0.0))
+        tangent = () if angle == "blind" else (tangent_near(s, drift, length),)
+        if tangent == ("",):
+            return ()
         if peak == 0.0:
-            return ((angle, "none"),)
+            return ((angle, "none", *tangent),)
         sigma = self.floats.R0 * z * z / r
         filters = ["cascade"] if sigma < 2.0 else ["none", "cascade"]
         if angle == "angle":
             filters.insert(0 if s * s < sigma else 1, "angle")
-        return tuple((angle, f) for f in filters)
+        return tuple((angle, f, *tangent) for f in filters)
 
     def loosened(self, state: Sequence[float], modes: Modes) -> tuple[float, ...]:
         """Give up s where its bound has reached sqrt 2; keep upper bounds off underflow."""
@@ -152,7 +158,7 @@ class PersistenceSystem(LawSystem):
             "z": -lam * z / 2 + c * v * bend,
         }
         if modes[0] == "angle":
-            drift = c * y if self.scalable else c * y * angle_factor(S)
+            drift = c * y if self.scalable else c * y * tangent_factor(S, modes[2])
             slopes |= {"y": -pull * y, "s": drift - pull * s}
         else:
             slopes["y"] = 0

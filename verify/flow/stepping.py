@@ -85,8 +85,11 @@ class ComparisonSystem(ABC):
     signs: tuple[int, ...]
 
     @abstractmethod
-    def choices(self, state: Sequence[float], peak: float) -> Sequence[Modes]:
-        """Forms of the inequalities to try from this state, best first; `peak`: see `rate`."""
+    def choices(self, state: Sequence[float], peak: float, length: float = 0.0) -> Sequence[Modes]:
+        """Forms of the inequalities to try from this state on a step of `length` s, best first.
+
+        `peak`: see `rate`.
+        """
 
     def loosened(self, state: Sequence[float], modes: Modes) -> tuple[float, ...]:
         """State at the start of a step in these modes: bounds may jump to their loose side."""
@@ -215,7 +218,7 @@ class Stepper:
         start = piece.start + piece.length * Fraction(j, n)
         stop = piece.start + piece.length * Fraction(j + 1, n)
         peak = _peak(piece.shape)
-        for modes in self.system.choices(state, peak):
+        for modes in self.system.choices(state, peak, float(stop - start)):
             first = self.system.loosened(state, modes)
             proposal = self._propose(piece.shape, part, float(stop - start), first, modes)
             if proposal is None:
