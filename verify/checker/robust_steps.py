@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from .bernstein import Form
-from .comparison import NO_BOUND, ONE, TWO, Conditions, angle_factor
+from .comparison import NO_BOUND, ONE, TWO, Conditions, rate_factor
 from .exact_numbers import HALF, Vector, require, show
 from .floor_bounds import root_above
 from .floor_steps import FloorStep
@@ -80,7 +80,7 @@ def _conditions(d: Robust, G: Form, step: FloorStep, dx: dict[str, Form], *, sca
         for kappa in (K, L):
             a = kappa * G
             yield "slope of y", dx["y"] + a * room * y - (a * a * s).times(m) - Form.constant(d.push)
-        drift = y if scaled else y * angle_factor(S)
+        drift = y if scaled else y * rate_factor(S, [*step.modes[:2], step.modes[3]])
         require(k.braking <= 1, "the braking may be lost")
         yield "slope of s", dx["s"] - drift.times(d.c) + (K * G * free * s).times(1 - k.braking)
     else:
@@ -116,7 +116,7 @@ def _filter(d: Robust, G: Form, step: FloorStep, dx: dict[str, Form]) -> Conditi
 
 def pairs_of(step: FloorStep) -> set[str]:
     """Which bounds of angle and rate a step keeps."""
-    require(len(step.modes) == 3 and step.modes[0] in PAIRS, "unknown form of the inequalities")
+    require(len(step.modes) == 4 and step.modes[0] in PAIRS, "unknown form of the inequalities")
     return PAIRS[step.modes[0]]
 
 

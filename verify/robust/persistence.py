@@ -22,32 +22,31 @@ With nothing uncertain these are the inequalities of `filter.persistence`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from math import ceil, exp
-from typing import final
+from math import ceil, exp, sqrt
+from typing import Any, final
 
 import numpy as np
 
 from ...models.types import Array
-from ..exact.bernstein import Bernstein
-from ..exact.rational import rational
 from ..exact.rounding import rounded_down, rounded_up
 from ..filter.comparison import (
     ATTITUDE_BOUND_LOST,
     NO_BOUND,
     ROUND_UP,
-    angle_factor,
     at_least_tiny,
     drives_attitude,
     filter_scale,
+    tangent_factor,
+    tangent_near,
 )
 from ..filter.flowpipe import LawComparison
 from ..filter.sets import InitialSet
+from ..flow.inequalities import Slope, StatedSystem
 from ..flow.stepping import Modes
 from .constants import CELLS, Constants, cell_end, greatest_n
 
-ONE, TWO = Bernstein.constant(1), Bernstein.constant(2)
 WIDER = (1.03, 1.2, 1.7)
 """Factors by which the bound of S at a step's start is taken for the whole step, in turn."""
 LAST = CELLS - 1
@@ -60,7 +59,7 @@ BOTH, ANGLE, CASCADE = "both", "angle", "cascade"
 
 
 @final
-class RobustPersistenceSystem(LawComparison):
+class RobustPersistenceSystem(StatedSystem, LawComparison):
     """Components K, L, y, s, v, z, W, r of the module's inequalities.
 
     Parameters
@@ -87,26 +86,24 @@ class RobustPersistenceSystem(LawComparison):
         scalable: bool = False,
         pairs: str = BOTH,
     ) -> None:
+        c = constants
+        excess = max(Fraction(0), 1 - c.damping)
+        super().__init__(
+            lam=decay, R0=initial_filter, c=c.coupling, B1=c.damping, phi=c.braking, push=push, excess=excess
+        )
         self.decay, self.initial_filter, self.constants, self.push = decay, initial_filter, constants, push
         self.scalable, self.pairs = scalable, pairs
         held = {BOTH: (("y", "s"), ("v", "z")), ANGLE: (("y", "s"),), CASCADE: (("v", "z"),)}[pairs]
         self.decaying: tuple[tuple[str, ...], ...] = () if push else held
         self.free = tuple({"y", "s", "v", "z"} - {name for pair in held for name in pair})
-        self._lam, self._R0 = float(decay), float(initial_filter)
-        c = constants
-        self._c_float, self._push_float = float(c.coupling), float(push)
-        self._B1, self._phi = float(c.damping), float(c.braking)
-        self._excess = max(Fraction(0), 1 - c.damping)
-        self._cells: dict[int, tuple[float, float, float]] = {}
-        self._lam_exact, self._R0_exact = rational(decay), rational(initial_filter)
+        self._cells: dict[int, tuple[Fraction, Fraction]] = {}
 
-    def _floats(self, cell: int) -> tuple[float, float, float]:
-        """2 B3 N, m and the excess of v's rate at a cell, in floats."""
+    def _cell(self, modes: Modes) -> tuple[Fraction, Fraction]:
+        """2 B3 N and m of a step's cell of S."""
+        cell = cell_of(modes)
         if cell not in self._cells:
             whirl = 2 * self.constants.gyroscopic * greatest_n(cell_end(cell))
-            self._cells[cell] = (
-                float(whirl), float(self.constants.forcing(cell)), float(self._excess + whirl)
-            )  # fmt: skip
+            self._cells[cell] = (whirl, self.constants.forcing(cell))
         return self._cells[cell]
 
     def start(self, initial: InitialSet) -> tuple[float, ...]:
@@ -136,17 +133,17 @@ class RobustPersistenceSystem(LawComparison):
             return self.pairs
         if s * s >= ATTITUDE_BOUND_LOST:
             return CASCADE
-        return ANGLE if self._R0 * L * z * z >= MAX_CASCADE else BOTH
+        return ANGLE if self.floats.R0 * L * z * z >= MAX_CASCADE else BOTH
 
     def contraction(self, period: float) -> float:
         """exp(-lambda T): what R forgets over a period."""
-        return exp(-self._lam * period)
+        return exp(-float(self.decay) * period)
 
     def bounds(self, low: dict[str, Array], high: dict[str, Array]) -> dict[str, Array]:
         """Take the better of the two bounds of angle and rate; s = inf asks for the second alone."""
         r = np.maximum(low["r"], 0.0)
         gain = np.minimum(ROUND_UP / r, high["L"])
-        share = self._R0 * gain * ROUND_UP
+        share = self.floats.R0 * gain * ROUND_UP
         s = high["s"]
         angle = np.where((s < NO_BOUND) | np.isinf(s), s**2, 2.0)
         return {
@@ -158,22 +155,26 @@ class RobustPersistenceSystem(LawComparison):
             "gain_high": gain,
         }
 
-    def choices(self, state: Sequence[float], peak: float) -> Sequence[Modes]:
-        """Which bound of the angle r and L use, best now first, and the cell of S for the whole step."""
-        _, L, _, s, _, z, _, r = state
+    def choices(self, state: Sequence[float], peak: float, length: float = 0.0) -> Sequence[Modes]:
+        """Which bound of the angle r and L use, best now first, the cell of S, and the tangent."""
+        _, L, y, s, _, z, _, r = state
         if r < 0.0 or (self.pairs == ANGLE and s * s >= ATTITUDE_BOUND_LOST):
             return ()
         pairs = self._kept(state)
+        drift = self.floats.c * y * sqrt(max(1.0 - 0.5 * s * s, 0.0))
+        tangent = "1" if pairs == CASCADE else tangent_near(s, drift, length)
+        if not tangent:
+            return ()
         if peak == 0.0:
-            return ((pairs, "none", f"{LAST}"),)
-        bounds = {ANGLE: s * s, CASCADE: self._R0 * L * z * z}
+            return ((pairs, "none", f"{LAST}", tangent),)
+        bounds = {ANGLE: s * s, CASCADE: self.floats.R0 * L * z * z}
         ways = sorted((way for way in bounds if pairs in (BOTH, way)), key=bounds.__getitem__)
         filters = [way for way in ways if bounds[way] < 2.0] or ["none"]
         filters += [way for way in ways if way not in filters]
         best = ways[0]
         cells = {min(LAST, max(0, ceil(bounds[best] * wider * CELLS / 2))) for wider in WIDER} | {LAST}
         return tuple(
-            (pairs, f, f"{best} {cell}" if cell < LAST else f"{LAST}")
+            (pairs, f, f"{best} {cell}" if cell < LAST else f"{LAST}", tangent)
             for cell in sorted(cells)
             for f in filters
         )
@@ -185,125 +186,66 @@ class RobustPersistenceSystem(LawComparison):
             s = NO_BOUND
         elif modes[0] == ANGLE:
             v = z = NO_CASCADE
-        s, z, scale = at_least_tiny(s), at_least_tiny(z), self._lam / self._c_float
+        s, z, scale = at_least_tiny(s), at_least_tiny(z), self.floats.lam / self.floats.c
         return (K, L, drives_attitude(y, s, scale), s, drives_attitude(v, z, scale), z, W, r)
 
-    def rate(
-        self, gain_square: float, state: Sequence[float], modes: Modes, peak: float, slack: float
-    ) -> tuple[float, ...]:
-        """Floats; each bound pushed outwards by `slack` times its own scale."""
-        K, L, y, s, v, z, W, r = state
-        lam, c, R0, G, push = self._lam, self._c_float, self._R0, gain_square, self._push_float
-        whirl, m, excess = self._floats(cell_of(modes))
-        S = s * s
-        outward = slack * peak
-        K_rate = lam * K - 2.0 * G * K * K - slack * (lam * K + 2.0 * peak * K * K)
-        sigma = {"none": 2.0, "angle": S, "cascade": R0 * L * z * z}[modes[1]]
-        L_rate = lam * L - G * L * L * (2.0 - sigma) + slack * L * L * filter_scale(lam / L, peak)
-        if modes[0] == CASCADE:
-            y_rate = s_rate = 0.0
-        else:
-            room = self._B1 * (1.0 - 0.5 * S) - whirl
-            y_rate = max(-k * G * room * y + (k * G) ** 2 * m * s for k in (K, L)) + push
-            y_rate += outward * L * (y + L * peak * m * s) + slack * push
-            factor = 1.0 if self.scalable else angle_factor(S)
-            pull = K * G * (1.0 - self._phi) * (1.0 - 0.5 * S)
-            s_rate = c * y * factor - pull * s + outward * K * s + slack * 0.1 * c * y
-        if modes[0] == ANGLE:
-            v_rate = z_rate = 0.0
-        else:
-            v_rate = -0.5 * lam * v * (1.0 - slack) + L * G * excess * v + (L * G) ** 2 * m * z
-            v_rate += outward * L * (excess * v + L * peak * m * z)
-            if push:
-                v_rate += (1.0 + slack) * push * W
-            bend = 1.0 if self.scalable else 1.0 - 0.25 * R0 * K * z * z
-            z_rate = -0.5 * lam * z * (1.0 - slack) + c * v * bend + L * G * self._phi * z
-            z_rate += slack * 0.5 * c * v + outward * L * self._phi * z
-        W_rate = -0.5 * lam * W * (1.0 - slack) + (G + outward) / (R0 * W)
-        sigma = {"none": 2.0, "angle": S, "cascade": R0 * z * z / r}[modes[1]]
-        r_rate = -lam * r + G * (2.0 - sigma) - slack * filter_scale(lam * r, peak)
-        if modes[1] == "none":
-            r_rate = -lam * r * (1.0 + slack)
-        return (K_rate, L_rate, y_rate, s_rate, v_rate, z_rate, W_rate, r_rate)
-
-    def conditions(
-        self, gain_square: Bernstein, x: Sequence[Bernstein], dx: Sequence[Bernstein], modes: Modes
-    ) -> Iterator[Bernstein]:
-        """Polynomials >= 0 iff every bound holds; the signs and the cell of S among them."""
+    def slopes(self, G: Any, x: Sequence[Any], modes: Modes, n: Any) -> dict[str, Slope]:
+        """State the module's inequalities."""
         K, L, y, s, v, z, W, r = x
-        dK, dL, dy, ds, dv, dz, dW, dr = dx
-        G, lam, c = gain_square, self._lam_exact, rational(self.constants.coupling)
-        cell = cell_of(modes)
-        m = rational(self.constants.forcing(cell))
-        whirl = rational(2 * self.constants.gyroscopic * greatest_n(cell_end(cell)))
-        phi, push = rational(self.constants.braking), rational(self.push)
-        half = rational(Fraction(1, 2))
-        yield K
-        yield L
-        yield y
-        yield z
-        yield v
-        yield r
-        yield K * lam - G * K * K * 2 - dK
-        yield W
-        yield W * (dW + W * half * lam) - G * (1 / self._R0_exact)
-        yield from self._cell(cell, s, z, L, modes)
+        lam, R0, S, a = n.lam, n.R0, s * s, L * G
+        whirl, m = self._cell(modes)
+        sigma = {"none": 2, ANGLE: S, CASCADE: R0 * L * z * z}[modes[1]]
+        slopes: dict[str, Slope] = {
+            "K": lam * K - 2 * G * K * K,
+            "L": lam * L - G * L * L * (2 - sigma),
+            "W": -lam * W / 2 + G / R0 / W,
+            "r": -lam * r + G * (2 - (R0 * z * z / r if modes[1] == CASCADE else sigma)),
+        }
+        if modes[1] == "none":
+            slopes |= {"L": lam * L, "r": -lam * r}
         if modes[0] != CASCADE:
-            S = s * s
-            yield TWO - S
-            yield s
-            room = (ONE - S * half) * rational(self.constants.damping) - ONE * whirl
-            for kappa in (K, L):
-                a = kappa * G
-                yield dy + a * room * y - a * a * s * m - ONE * push
-            drift = y if self.scalable else y * angle_factor(S)
-            yield ds - drift * c + K * G * (ONE - S * half) * s * (1 - phi)
-        else:
-            yield dy
-            yield s - ONE * rational(NO_BOUND)
-        if modes[0] == ANGLE:
-            yield dv
-            yield dz
-        else:
-            excess = rational(self._excess) + whirl
-            a = L * G
-            forced = v * half * lam * -1 + a * v * excess + a * a * z * m
-            bend = ONE if self.scalable else ONE - K * z * z * self._R0_exact * rational(Fraction(1, 4))
-            if push:
-                forced = forced + W * push
-            yield dv - forced
-            yield dz + z * half * lam - v * bend * c - a * z * phi
-        yield from self._filter(G, s, z, L, r, (dL, dr), modes[1])
+            room = n.B1 * (1 - S / 2) - whirl
+            slopes["y"] = tuple(k * G * (k * G * m * s - room * y) + n.push for k in (K, L))
+            drift = n.c * y if self.scalable else n.c * y * tangent_factor(S, modes[3])
+            slopes["s"] = drift - K * G * (1 - n.phi) * (1 - S / 2) * s
+        if modes[0] != ANGLE:
+            bend = 1 if self.scalable else 1 - R0 * K * z * z / 4
+            slopes["v"] = -lam * v / 2 + a * (n.excess + whirl) * v + a * a * m * z + n.push * W
+            slopes["z"] = -lam * z / 2 + n.c * v * bend + a * n.phi * z
+        return slopes
 
-    def _cell(self, cell: int, s: Bernstein, z: Bernstein, L: Bernstein, modes: Modes) -> Iterator[Bernstein]:
-        """S <= the upper end of the cell throughout the step; the last cell's is 2."""
-        if cell == LAST:
-            return
-        end = ONE * rational(cell_end(cell))
-        yield end - (s * s if modes[2].startswith("angle") else z * z * L * self._R0_exact)
-
-    def _filter(
-        self,
-        G: Bernstein,
-        s: Bernstein,
-        z: Bernstein,
-        L: Bernstein,
-        r: Bernstein,
-        slopes: tuple[Bernstein, Bernstein],
-        mode: str,
-    ) -> Iterator[Bernstein]:
-        dL, dr = slopes
-        lam, R0 = self._lam_exact, self._R0_exact
-        if mode == "none":
-            yield -dr - r * lam
-            yield dL - L * lam
-        elif mode == "angle":
-            intake = G * (TWO - s * s)
-            yield intake - r * lam - dr
-            yield dL - L * lam + intake * L * L
+    def signs_of(self, x: Sequence[Any], modes: Modes, n: Any) -> Iterator[Any]:
+        """Every component >= 0, s <= sqrt 2 or given up, S within the step's cell."""
+        K, L, y, s, v, z, W, r = x
+        yield from (K, L, y, z, v, W, r)
+        if modes[0] == CASCADE:
+            yield s - NO_BOUND
         else:
-            yield G * (r * 2 - z * z * R0) - r * (r * lam + dr)  # multiplied by r > 0
-            yield dL - L * lam + G * (TWO - z * z * L * R0) * L * L
+            yield from (2 - s * s, s)
+        cell = cell_of(modes)
+        if cell < LAST:
+            yield cell_end(cell) - (s * s if modes[2].startswith(ANGLE) else z * z * L * n.R0)
+
+    def pushed(
+        self, slopes: Mapping[str, float], state: Sequence[float], modes: Modes, peak: float, slack: float
+    ) -> tuple[float, ...]:
+        """Push each by `slack` times its own scale, r and L by what keeps r > 0 after a long off-time."""
+        K, L, y, s, v, z, W, r = state
+        n, outward = self.floats, slack * peak
+        whirl, m = (float(x) for x in self._cell(modes))
+        scale = n.lam * r if modes[1] == "none" else filter_scale(n.lam * r, peak)
+        push = {
+            "K": -slack * (n.lam * K + 2.0 * peak * K * K),
+            "L": slack * L * L * filter_scale(n.lam / L, peak),
+            "y": outward * L * (y + L * peak * m * s) + slack * n.push,
+            "s": outward * K * s + slack * 0.1 * n.c * y,
+            "v": slack * (0.5 * n.lam * v + n.push * W)
+            + outward * L * ((n.excess + whirl) * v + L * peak * m * z),
+            "z": slack * 0.5 * (n.lam * z + n.c * v) + outward * L * n.phi * z,
+            "W": slack * 0.5 * n.lam * W + outward / (n.R0 * W),
+            "r": -slack * scale,
+        }
+        return tuple(float(slopes[name]) + push[name] if name in slopes else 0.0 for name in self.names)
 
 
 def cell_of(modes: Modes) -> int:
