@@ -150,7 +150,7 @@ TANGENTS = 64
 
 def rate_factor(S: Form, modes: Sequence[str]) -> Form:
     """A(S), or the tangent that a step's third word names: sqrt(1 - S/2) <= (t^2 + 1 - S/2)/(2 t), t > 0."""
-    if len(modes) < 3:
+    if len(modes) < 3 or modes[2] == "A":
         return angle_factor(S)
     require(modes[2].isdecimal() and 1 <= int(modes[2]) <= TANGENTS, "unknown tangent of sqrt(1 - S/2)")
     t = Fraction(int(modes[2]), TANGENTS)

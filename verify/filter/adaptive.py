@@ -35,9 +35,9 @@ from .comparison import (
     angle_factor,
     at_least_tiny,
     drives_attitude,
+    factor_near,
     filter_scale,
-    tangent_factor,
-    tangent_near,
+    rate_factor,
 )
 from .law_system import LawSystem
 from .proofs import CASCADE, ComparisonProof, attitude_measures
@@ -171,7 +171,7 @@ class AdaptiveSystem(LawSystem):
             tops = ["split"]
         keeps = ("kept", "zero") if s > MIN_ANGLE_BOUND_SHARE * Z else ("zero",)
         learns: list[Modes] = [(), ("held",)] if peak > 0 and k < MIN_GAIN_SHARE * self.floats.lam else [()]
-        t = tangent_near(Z, self.coupling * Y * sqrt(1.0 - 0.5 * Z * Z), length)
+        t = factor_near(Z, self.coupling * Y * sqrt(1.0 - 0.5 * Z * Z), length)
         if not t:
             return ()
         return tuple((keep, top, t, *held) for keep in keeps for held in learns for top in tops)
@@ -203,7 +203,7 @@ class AdaptiveSystem(LawSystem):
             ),
             "r": -lam * r + G * room_high,
             "Y": -high_pull * Y,
-            "Z": c * Y * tangent_factor(T, modes[2]) - high_pull * Z,
+            "Z": c * Y * rate_factor(T, modes[2]) - high_pull * Z,
             "L": gamma * U * G * f,
             "U": -lam * U + G * room_low,
         }

@@ -95,26 +95,34 @@ TANGENTS = 64
 
 MAX_FALL = 1 / 3
 """Share of sqrt(1 - S/2) that may be lost over a step with one tangent."""
+NEAR_TARGET = 0.8
+"""Above this sqrt(1 - S/2) (S < 0.72, 147 deg) A(S) is within 2 per cent, over a step of any length."""
 
 
-def tangent_factor(S: Any, form: str) -> Any:
-    """Return an upper bound of u = sqrt(1 - S/2): u <= (t^2 + 1 - S/2)/(2 t) for any t > 0, equal at u = t.
+def rate_factor(S: Any, form: str) -> Any:
+    """Return an upper bound of u = sqrt(1 - S/2): A(S), or for any t > 0 the tangent (t^2 + 1 - S/2)/(2 t).
 
-    `form` says t, as 64 t. Near S = 2, where a body has turned almost all the way round, A(S) is loose.
+    `form` is "A", or 64 t. Near S = 2, where a body has turned almost all the way round, A(S) is loose.
     """
+    if form == "A":
+        return angle_factor(S)
     t = Fraction(int(form), TANGENTS)
     return (t * t + 1) / (2 * t) - S / (4 * t)
 
 
-def tangent_near(s: float, drift: float, length: float) -> str:
-    """Name the tangent for a step of this length (s) from s = sqrt(1 - b0), whose slope is `drift` times u.
+def factor_near(s: float, drift: float, length: float) -> str:
+    """Name the factor for a step of this length (s) from s = sqrt(1 - b0), whose slope is `drift`.
 
     Empty where u falls by more than a third: one tangent would be loose, and the step is better cut.
     """
-    u, ahead = (sqrt(max(1.0 - 0.5 * x * x, 0.0)) for x in (s, s + 0.5 * drift * length))
-    if ahead < (1.0 - 0.5 * MAX_FALL) * u and length > 0.0:
+    u, middle, end = (
+        sqrt(max(1.0 - 0.5 * x * x, 0.0)) for x in (s, s + 0.5 * drift * length, s + drift * length)
+    )
+    if end > NEAR_TARGET:
+        return "A"
+    if middle < (1.0 - 0.5 * MAX_FALL) * u and length > 0.0:
         return ""
-    return str(min(max(round(TANGENTS * ahead), 1), TANGENTS))
+    return str(min(max(round(TANGENTS * middle), 1), TANGENTS))
 
 
 def at_least_tiny(value: float) -> float:

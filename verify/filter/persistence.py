@@ -36,9 +36,9 @@ from .comparison import (
     BodyBounds,
     at_least_tiny,
     drives_attitude,
+    factor_near,
     filter_scale,
-    tangent_factor,
-    tangent_near,
+    rate_factor,
 )
 from .law_system import LawSystem
 from .proofs import CASCADE, ComparisonProof, attitude_measures
@@ -127,7 +127,7 @@ class PersistenceSystem(LawSystem):
             return ()
         angle = "angle" if s * s < ATTITUDE_BOUND_LOST else "blind"
         drift = self.coupling * y * sqrt(max(1.0 - 0.5 * s * s, 0.0))
-        tangent = () if angle == "blind" else (tangent_near(s, drift, length),)
+        tangent = () if angle == "blind" else (factor_near(s, drift, length),)
         if tangent == ("",):
             return ()
         if peak == 0.0:
@@ -158,7 +158,7 @@ class PersistenceSystem(LawSystem):
             "z": -lam * z / 2 + c * v * bend,
         }
         if modes[0] == "angle":
-            drift = c * y if self.scalable else c * y * tangent_factor(S, modes[2])
+            drift = c * y if self.scalable else c * y * rate_factor(S, modes[2])
             slopes |= {"y": -pull * y, "s": drift - pull * s}
         else:
             slopes["y"] = 0

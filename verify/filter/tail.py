@@ -37,9 +37,9 @@ class PeriodicSystem(ComparisonSystem):
     free: tuple[str, ...] = ()
     decay: Fraction = Fraction(0)
 
-    def choices(self, state: Sequence[float], peak: float) -> Sequence[Modes]:
+    def choices(self, state: Sequence[float], peak: float, length: float = 0.0) -> Sequence[Modes]:
         """One form of the inequalities, unless the system has several to choose from."""
-        del state, peak
+        del state, peak, length
         return ((),)
 
     def limits(

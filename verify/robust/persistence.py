@@ -37,9 +37,9 @@ from ..filter.comparison import (
     ROUND_UP,
     at_least_tiny,
     drives_attitude,
+    factor_near,
     filter_scale,
-    tangent_factor,
-    tangent_near,
+    rate_factor,
 )
 from ..filter.flowpipe import LawComparison
 from ..filter.sets import InitialSet
@@ -162,7 +162,7 @@ class RobustPersistenceSystem(StatedSystem, LawComparison):
             return ()
         pairs = self._kept(state)
         drift = self.floats.c * y * sqrt(max(1.0 - 0.5 * s * s, 0.0))
-        tangent = "1" if pairs == CASCADE else tangent_near(s, drift, length)
+        tangent = "1" if pairs == CASCADE else factor_near(s, drift, length)
         if not tangent:
             return ()
         if peak == 0.0:
@@ -206,7 +206,7 @@ class RobustPersistenceSystem(StatedSystem, LawComparison):
         if modes[0] != CASCADE:
             room = n.B1 * (1 - S / 2) - whirl
             slopes["y"] = tuple(k * G * (k * G * m * s - room * y) + n.push for k in (K, L))
-            drift = n.c * y if self.scalable else n.c * y * tangent_factor(S, modes[3])
+            drift = n.c * y if self.scalable else n.c * y * rate_factor(S, modes[3])
             slopes["s"] = drift - K * G * (1 - n.phi) * (1 - S / 2) * s
         if modes[0] != ANGLE:
             bend = 1 if self.scalable else 1 - R0 * K * z * z / 4

@@ -145,7 +145,8 @@ def test_a_filter_emptied_by_a_long_gap_keeps_its_floor(law, gap):
     floor = certify_floor(replace(law, lambda_=F(1)), BOUNDS, schedule, start, options=options)
     assert floor.horizon is None
     converged = ConvergedFilter(schedule, F(1)).floor()
-    assert 0.97 * converged.low <= floor.value <= converged.high
+    # the set is not split where R is next to forgotten within a gap: one bin's bounds, within 5 per cent
+    assert 0.95 * converged.low <= floor.value <= converged.high
 
 
 @pytest.mark.parametrize("law", [PERSISTENCE, ADAPTIVE])
