@@ -67,13 +67,18 @@ class Written:
     @property
     def text(self) -> str:
         """Unicode text: "≥ 1.25×10⁻³ N m", with a true minus."""
+        return " ".join(part for part in self.digits_and_unit if part)
+
+    @property
+    def digits_and_unit(self) -> tuple[str, str]:
+        """The text in its two parts: a line may break between them, and nowhere else."""
         if self.missing:
-            return f"{MISSING} ({self.note})" if self.note else MISSING
+            return (f"{MISSING} ({self.note})" if self.note else MISSING), ""
         power = f"×10{superscript(self.exponent)}" if self.exponent else ""
         low, high = (d.replace("-", MINUS) for d in (self.low, self.high))
         body = f"[{low}, {high}]{power}" if high else low + power
         relation = {"": "", ">=": "≥", "<=": "≤"}[self.relation]
-        return " ".join(p for p in (relation, body, unit_text(self.unit)) if p)
+        return " ".join(p for p in (relation, body) if p), unit_text(self.unit)
 
 
 def write(quantity: QuantityEntry, *, most: int = MAX_DIGITS, unit: bool = True) -> Written:

@@ -73,8 +73,9 @@ def cell(value: Cell, column_unit: str = "") -> dict[str, object]:
             "text": words(unit_text(value.unit)),
         }
     written = write(value, unit=not column_unit or column_unit != value.unit)
+    digits, unit = written.digits_and_unit
     return {
-        "text": words(written.text.replace(" ", "\u00a0")),
+        "text": words(" ".join(part.replace(" ", "\u00a0") for part in (digits, unit) if part)),
         "rigorous": written.rigorous and not written.missing,
     }
 

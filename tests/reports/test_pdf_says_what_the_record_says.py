@@ -16,7 +16,9 @@ from intermit.reports.content.escape import directed, east_asian_font, printable
 from intermit.reports.content.figures import drawings, pdf_figures
 from intermit.reports.content.heading import heading
 from intermit.reports.numbers import write
+from intermit.reports.parts import quantity
 from intermit.reports.pdf import pdf_document
+from intermit.reports.pdf.blocks import cell
 from outside_tools import need
 from respoken import respoken
 from synthetic_record import make, quantities
@@ -48,6 +50,20 @@ def test_every_number_of_the_record_is_in_the_text(record: Record, document: byt
     text = squeezed("".join(pages(document)))
     for q in quantities(record):
         assert squeezed(write(q, unit=False).text) in text, q
+
+
+def test_a_value_may_break_before_its_unit_and_nowhere_else() -> None:
+    """In a narrow column values ran into each other; a number or a unit is never torn."""
+    shown = cell(quantity("peak", 0.00024257, 0.00024258, unit="N m", side="lower"))["text"]
+    assert shown == "≥\u00a00.00024257 N·m"
+    assert str(cell(quantity("range", 1.0, 2.0, unit="s"))["text"]).count(" ") == 1
+
+
+def test_no_page_begins_with_the_last_line_of_a_short_table(document: bytes) -> None:
+    """Every claim's facts end with how to check again; none of those ends stands alone on a page."""
+    for page in pages(document)[1:]:
+        lines = [line.strip() for line in page.splitlines() if line.strip()]
+        assert not lines[1].startswith("Check again intermit"), lines[:3]
 
 
 def test_first_page_has_title_answer_hash_and_verdicts(record: Record, document: bytes) -> None:
