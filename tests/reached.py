@@ -18,11 +18,12 @@ from types import CodeType, ModuleType
 
 ROOMS = ("intermit.verify", "intermit.optim.bounds")
 ALLOWED = {
-    "intermit.verify.checker.command:main": "run as a program of its own",
+    "intermit.verify.checker.__main__:run": "runs as a program of its own",
 }
 """Functions that no test reaches in its own process, with the reason."""
 
 _tables: dict[str, bytearray] = {}
+_names: dict[str, list[str]] = {}
 
 
 def functions(tree: ast.Module) -> list[tuple[str, ast.FunctionDef]]:
@@ -62,7 +63,7 @@ def marked(source: str, path: str, module: str) -> CodeType:
         while isinstance(head := tree.body[first], ast.ImportFrom) and head.module == "__future__":
             first += 1
         tree.body.insert(first, _at(start, tree.body[first]))
-    _tables[module] = bytearray(len(listed))
+    _tables[module], _names[module] = bytearray(len(listed)), [name for name, _ in listed]
     return compile(ast.fix_missing_locations(tree), path, "exec", dont_inherit=True)
 
 
@@ -104,8 +105,11 @@ def install() -> None:
 def write(folder: Path) -> None:
     """Leave what this process reached."""
     folder.mkdir(parents=True, exist_ok=True)
-    text = json.dumps({name: marks.hex() for name, marks in _tables.items()})
-    (folder / f"{os.getpid()}.json").write_text(text)
+    found = {
+        module: [name for name, mark in zip(_names[module], marks, strict=True) if mark]
+        for module, marks in _tables.items()
+    }
+    (folder / f"{os.getpid()}.json").write_text(json.dumps(found))
 
 
 def unreached(folder: Path, package: Path) -> list[str]:
@@ -116,10 +120,9 @@ def unreached(folder: Path, package: Path) -> list[str]:
         for file in sorted((package / Path(*room.split(".")[1:])).rglob("*.py")):
             parts = file.relative_to(package).with_suffix("").parts
             module = ".".join(("intermit", *(p for p in parts if p != "__init__")))
-            marks = [bytes.fromhex(one[module]) for one in held if module in one]
-            for number, (name, _) in enumerate(functions(ast.parse(file.read_text()))):
-                if not any(m[number] for m in marks):
-                    missing.append(f"{module}:{name}")
+            reached = {name for one in held for name in one.get(module, ())}
+            listed = (name for name, _ in functions(ast.parse(file.read_text())))
+            missing += [f"{module}:{name}" for name in listed if name not in reached]
     return missing
 
 

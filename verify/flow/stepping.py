@@ -66,10 +66,6 @@ class Step:
         """g^2 on the step, exact."""
         return gain_square(self.shape, self.part)
 
-    def polynomial(self, name: str) -> Bernstein:
-        """One component on the step, exact."""
-        return Bernstein.from_controls(self.controls[name])
-
     def end_state(self) -> dict[str, float]:
         """Values at the end of the step."""
         return {name: c[-1] for name, c in self.controls.items()}

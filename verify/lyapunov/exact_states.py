@@ -15,7 +15,7 @@ from typing import Any, final
 
 import casadi as ca
 
-from ...models.closed_loop import INERTIA_ENTRIES, INERTIA_NAMES, ClosedLoop
+from ...models.closed_loop import INERTIA_ENTRIES, ClosedLoop
 from ...models.laws import Expression
 from ...models.lowering import FIELD, Program, evaluate, walk
 from ..exact.matrix import Rows, inverse
@@ -136,8 +136,3 @@ def loop_arguments(loop: ClosedLoop, state: ExactState, body: Sequence[Fraction]
 def body_entries(inertia: Rows) -> list[Fraction]:
     """Return the exact numbers of `ClosedLoop.body`: J's upper triangle, then that of J^-1."""
     return [M[i][j] for M in (inertia, inverse(inertia)) for i, j in INERTIA_ENTRIES]
-
-
-def entries(inertia: Rows) -> dict[str, Fraction]:
-    """Upper triangle of J by name."""
-    return {name: inertia[i][j] for name, (i, j) in zip(INERTIA_NAMES, INERTIA_ENTRIES, strict=True)}

@@ -25,9 +25,3 @@ def remembered(key: tuple[object, ...], compute: Callable[[], PathBound]) -> Pat
         while len(_kept) > _MOST:
             _kept.popitem(last=False)
     return value
-
-
-def forget() -> None:
-    """Empty the memory."""
-    with _lock:
-        _kept.clear()
