@@ -11,6 +11,7 @@ from intermit.models.norms import LARGEST_COMPONENT
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import Schedule
 from intermit.verify.filter.question import FloorQuestion
+from intermit.verify.robust.answer import RobustQuestion
 
 OWN = {f.name for f in fields(FloorQuestion)}
 LOOSE = {
@@ -54,3 +55,10 @@ def other(question: FloorQuestion, **changes: Any) -> FloorQuestion:
         )
     own = {k: v for k, v in changes.items() if k in OWN}
     return replace(question, **{"mission": replace(m, **new), **own})
+
+
+def robust(law, body, schedule, uncertainty, max_angle_deg: F, **more: Any) -> RobustQuestion:
+    """What is asked of one law on every body of an uncertainty; the names are those of `question`."""
+    own = {k: more.pop(k) for k in ("horizon", "options") if k in more}
+    mission = question(law, body, schedule, max_angle_deg, **more).mission
+    return RobustQuestion(law=law, mission=replace(mission, uncertainty=uncertainty), **own)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction as F
 
+import missions
 import numpy as np
 from floor_attack import random_question
 from intermit.models.ensemble import Tolerances, simulate_ensemble
@@ -23,7 +23,7 @@ LAW = PersistenceFilter(F(21, 40), F(1))
 
 
 def question(angle=120, rate=F(3, 10), body=BODY, **channels):
-    return RobustQuestion(
+    return missions.robust(
         law=LAW, body=body, schedule=SCHEDULE, uncertainty=Uncertainty(**channels),
         max_angle_deg=F(angle), max_weighted_rate=rate,
     )  # fmt: skip
@@ -46,7 +46,7 @@ def random_robust_question(seed: int) -> RobustQuestion:
         misalignment_deg=share["turn"] / 8,
         disturbance=share["push"] * F(f"{float(base.bounds.least):.2g}") / 2000,
     )
-    return RobustQuestion(
+    return missions.robust(
         law=base.law,
         body=base.mission.body,
         schedule=base.mission.schedule,
@@ -58,13 +58,15 @@ def random_robust_question(seed: int) -> RobustQuestion:
 
 def starts(q: RobustQuestion, count: int, rng: np.random.Generator):
     """Starts of the set, most on its boundary, many with a rate along bv; (count, 7)."""
-    J0, rows = q.body.inertia, []
+    J0, bounds, rows = q.mission.body.inertia, q.mission.starts, []
     for _ in range(count):
-        angle = np.radians(float(q.max_angle_deg)) * (1 if rng.random() < 0.7 else rng.random())
+        angle = np.radians(float(q.mission.starts.max_angle_deg)) * (
+            1 if rng.random() < 0.7 else rng.random()
+        )
         axis = rng.normal(size=3)
         axis /= np.linalg.norm(axis)
         way = axis * rng.choice([-1, 1]) if rng.random() < 0.4 else rng.normal(size=3)
-        most = float(q.max_weighted_rate or 0) * (1 if rng.random() < 0.7 else rng.random())
+        most = float(bounds.max_weighted_rate or 0) * (1 if rng.random() < 0.7 else rng.random())
         rate = way * most / np.sqrt(way @ J0 @ way)
         rows.append(np.concatenate([[np.cos(angle / 2)], np.sin(angle / 2) * axis, rate]))
     return np.array(rows)
@@ -73,15 +75,16 @@ def starts(q: RobustQuestion, count: int, rng: np.random.Generator):
 def attack(q: RobustQuestion, floor, *, runs: int = 40, periods: int = 8, seed: int = 0) -> dict[str, float]:
     """Largest ratios of what is flown to what is proved: floor, gap (1 - b0), rate, late gap and rate."""
     rng = np.random.default_rng(seed)
-    members = draw_members(q.law, q.body, q.uncertainty, runs, rng)
+    members = draw_members(q.law, q.mission.body, q.mission.uncertainty, runs, rng)
     first = starts(q, runs, rng)
-    horizon = q.schedule.period * periods
+    horizon = q.mission.schedule.period * periods
     times = np.linspace(0, float(horizon), 40 * periods + 1)[1:]
     found, worst = consequences(floor), dict.fromkeys(("floor", "gap", "rate", "late", "envelope"), 0.0)
     for way in {m.law.toward for m in members}:
         chosen = [i for i, m in enumerate(members) if m.law.toward == way]
         result = simulate_ensemble(
-            [members[i].law for i in chosen], [members[i].body for i in chosen], q.schedule, first[chosen],
+            [members[i].law for i in chosen], [members[i].body for i in chosen], q.mission.schedule,
+            first[chosen],
             horizon=horizon, times=times, tolerances=Tolerances(rtol=1e-9, atol=1e-12),
         )  # fmt: skip
         gap = 1 - result.states[:, :, 0]
@@ -105,7 +108,7 @@ def envelope(floor, times):
     """Bound of S at each time over all bins, (T,)."""
     result = np.zeros(len(times))
     for _, pipe in floor.parts:
-        period = float(floor.question.schedule.period)
+        period = float(floor.question.mission.schedule.period)
         for k, t in enumerate(times):
             boxes, scale, at = pipe.boxes, 1.0, t
             if pipe.tail is not None and t > float(pipe.tail.start):
@@ -119,4 +122,4 @@ def envelope(floor, times):
 
 def nominal(q: RobustQuestion) -> RobustQuestion:
     """The same question with nothing uncertain."""
-    return replace(q, uncertainty=Uncertainty())
+    return q.about(Uncertainty())

@@ -31,18 +31,7 @@ def floor_question(scenario: Scenario, law: Law, seen: RunFigures, *, search: bo
 
 def robust_question(scenario: Scenario, law: Law) -> RobustQuestion:
     """Put the same question about every body of the scenario's uncertainty."""
-    bounds = scenario.initial_set
-    return RobustQuestion(
-        law=law,
-        body=scenario.body,
-        schedule=scenario.schedule,
-        uncertainty=scenario.uncertainty,
-        max_angle_deg=bounds.max_angle_deg,
-        max_rate=bounds.max_rate,
-        max_weighted_rate=bounds.max_weighted_rate,
-        attitude=scenario.tolerance.attitude,
-        rate=scenario.tolerance.rate,
-    )
+    return RobustQuestion(law=law, mission=scenario.mission)
 
 
 def is_certified(question: FloorQuestion, law: Law, schedule: Schedule) -> bool:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import final
 
 from ...models.laws import Law
-from ...models.rigid_body import RigidBody
-from ...models.schedule import Schedule
+from ...models.mission import Mission
 from ...models.uncertainty import Uncertainty
 from ..exact.ball import sqrt_above
 from ..filter.certify import FloorOptions
@@ -29,41 +28,35 @@ SCALE_BINS = (1, 2, 4)
 @final
 @dataclass(frozen=True, kw_only=True)
 class RobustQuestion:
-    """What is asked: a law that believes in `body`, on every body of the uncertainty, from every start.
+    """What is asked: a law on every body of the mission's uncertainty, from every start of its set.
 
     Attributes
     ----------
-    law, body, schedule : the loop as the controller knows it
-    uncertainty : what it does not know
-    max_angle_deg : bound of 2 acos(b0), deg, of the initial set
-    max_rate : bound of |w(0)|, rad/s, or None
-    max_weighted_rate : bound of |Omega(0)| in the believed inertia, sqrt(kg m^2) rad/s; both None is at rest
-    attitude, rate : tolerances of |bv| and |w| (rad/s) for the settling time
+    law, mission : the loop as the controller knows it, and what it does not know
     horizon : end of the time asked about, s, of a finite table; None is the table's end
+    options : how hard to certify
     """
 
     law: Law
-    body: RigidBody
-    schedule: Schedule
-    uncertainty: Uncertainty
-    max_angle_deg: Fraction
-    max_rate: Fraction | None = None
-    max_weighted_rate: Fraction | None = None
-    attitude: Fraction = Fraction(1, 100)
-    rate: Fraction = Fraction(1, 100)
+    mission: Mission
     horizon: Fraction | None = None
     options: FloorOptions = OPTIONS
+
+    def about(self, uncertainty: Uncertainty) -> RobustQuestion:
+        """The same question about another uncertainty."""
+        return replace(self, mission=replace(self.mission, uncertainty=uncertainty))
 
     def initial(self, part: BodyBin, gain_term: Fraction) -> InitialSet:
         """The initial set in the variables of a bin: s and y = |x(0)|_J.
 
         x = Omega + Phi zeta, with zeta = 2 g^2 kappa bv at the start (`gain_term` is g^2 kappa there).
         """
+        starts = self.mission.starts
         believed = InitialSet.from_bounds(
-            BodyBounds.of(self.body),
-            max_angle_deg=self.max_angle_deg,
-            max_rate=self.max_rate,
-            max_weighted_rate=self.max_weighted_rate,
+            BodyBounds.of(self.mission.body),
+            max_angle_deg=starts.max_angle_deg,
+            max_rate=starts.max_rate,
+            max_weighted_rate=starts.max_weighted_rate,
             gain_term=gain_term,
         )
         c = part.constants
@@ -122,13 +115,14 @@ def certify_robust_floor(question: RobustQuestion) -> RobustFloor:
         raise NoComparisonError(
             f"{law_words(q.law)} learns its gain: for an unknown body only kappa = 1/R has its inequalities"
         )
-    piece = next(q.schedule.profile.pieces)
+    schedule = q.mission.schedule
+    piece = next(schedule.profile.pieces)
     g = piece.shape[0] if piece.shape else Fraction(0)
     gain_term = g * g / known.initial_filter
     found: RobustFloor | None = None
     for count in SCALE_BINS:
         parts = []
-        for part in body_bins(q.body, q.uncertainty, count):
+        for part in body_bins(q.mission.body, q.mission.uncertainty, count):
             system = RobustPersistenceSystem(
                 decay=known.decay,
                 initial_filter=known.initial_filter,
@@ -136,9 +130,8 @@ def certify_robust_floor(question: RobustQuestion) -> RobustFloor:
                 push=part.push,
             )
             initial = q.initial(part, gain_term)
-            parts.append(
-                (part, robust_flowpipe(system, q.schedule, initial, horizon=q.horizon, options=q.options))
-            )
+            pipe = robust_flowpipe(system, schedule, initial, horizon=q.horizon, options=q.options)
+            parts.append((part, pipe))
         ends = [p.failed_at if p.failed_at is not None else p.end for _, p in parts if p.tail is None]
         found = RobustFloor(q, known, tuple(parts), min(ends, default=None))
         if found.failed_at is None or len(parts) < count:

@@ -10,7 +10,7 @@ from ...models.closed_loop import close_loop
 from ...models.uncertainty import Uncertainty
 from ..certificates.format import Certificate
 from ..certificates.schedule import schedule_data
-from ..filter.certificate import scaled_integers
+from ..filter.certificate import scaled_integers, set_data
 from ..filter.flowpipe import Flowpipe
 from ..flow.stepping import Step
 from ..lyapunov.forms import law_form
@@ -23,14 +23,18 @@ KIND = "robust-floor"
 
 def robust_certificate(floor: RobustFloor, found: Consequences) -> Certificate:
     """Certificate of R >= floor, and of what follows for angle and rate."""
-    q = floor.question
+    q, settled = floor.question, floor.question.mission.tolerance
     claim: dict[str, object] = {"floor": Fraction(floor.value)}
     if floor.horizon is not None:
         claim["horizon"] = floor.horizon
     elif found.ratio is not None:
         claim |= {"ratio": Fraction(found.ratio), "ratio_from": found.ratio_from}
     if found.settling is not None:
-        claim["settling"] = {"time": Fraction(found.settling), "attitude": q.attitude, "rate": q.rate}
+        claim["settling"] = {
+            "time": Fraction(found.settling),
+            "attitude": settled.attitude,
+            "rate": settled.rate,
+        }
     bounds = [(Fraction(0), found.largest_gap, found.largest_rate)]
     if found.ultimate is not None:
         u = found.ultimate
@@ -43,7 +47,7 @@ def robust_certificate(floor: RobustFloor, found: Consequences) -> Certificate:
     witness = {
         "lo": inertia.lo,
         "hi": inertia.hi,
-        "shape": shape_error(q.body, q.uncertainty),
+        "shape": shape_error(q.mission.body, q.mission.uncertainty),
         "bins": [_bin(part, pipe) for part, pipe in floor.parts],
     }
     return Certificate(KIND, robust_data(q), claim, witness)
@@ -56,19 +60,14 @@ def _above(value: float) -> float:
 
 def robust_data(q: RobustQuestion) -> dict[str, object]:
     """What the claims speak about: the loop that the controller knows, and what it does not know."""
-    bounds = {
-        "max_angle_deg": q.max_angle_deg,
-        "max_rate": q.max_rate,
-        "max_weighted_rate": q.max_weighted_rate,
-    }
     return {
-        "inertia": q.body.exact_inertia,
+        "inertia": q.mission.body.exact_inertia,
         "law": law_form(close_loop(q.law)),
         "parameters": q.law.parameters,
         "initial": {state.name: state.initial for state in q.law.controller_states},
-        "schedule": schedule_data(q.schedule),
-        "initial_set": {name: value for name, value in bounds.items() if value is not None},
-        "uncertainty": uncertainty_data(q.uncertainty),
+        "schedule": schedule_data(q.mission.schedule),
+        "initial_set": set_data(q.mission.starts),
+        "uncertainty": uncertainty_data(q.mission.uncertainty),
     }
 
 

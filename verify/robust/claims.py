@@ -46,7 +46,7 @@ def robust_claims(
     tuple of Claim
         "robust.floor", and "robust.convergence" or, with a disturbance, "robust.ultimate".
     """
-    key = "robust.ultimate" if question.uncertainty.disturbance else "robust.convergence"
+    key = "robust.ultimate" if question.mission.uncertainty.disturbance else "robust.convergence"
     beside = tuple(_found_quantities(found)) if found is not None else ()
     seen = {"robust.floor": [b for b in beside if b.name == "members_floor"]}
     seen[key] = [b for b in beside if b.name != "members_floor"]
@@ -58,7 +58,7 @@ def robust_claims(
             step = "read the figures of the members that were flown; they are no proof"
         keys = ("robust.floor", key) if _has_filter(question) else (key,)
         return tuple(_undecided(k, question, str(error), step, tuple(seen[k])) for k in keys)
-    if floor.failed_at is not None or (not floor.repeats and question.schedule.period is not None):
+    if floor.failed_at is not None or (not floor.repeats and question.mission.schedule.period is not None):
         reason, step = _shortfall(floor)
         return tuple(_undecided(k, question, reason, step, tuple(seen[k])) for k in ("robust.floor", key))
     drawn = consequences(floor)
@@ -103,15 +103,16 @@ def _motion_claim(
         )
     else:
         assert drawn.ratio is not None
-        assert q.schedule.period is not None
+        assert q.mission.schedule.period is not None
         says = (
             f"the bounds of sqrt(1 - b0) and |x|_J shrink by a factor {digits_above(drawn.ratio, DIGITS)} "
-            f"every {float(q.schedule.period):g} s from t = {float(drawn.ratio_from):g} s on"
+            f"every {float(q.mission.schedule.period):g} s from t = {float(drawn.ratio_from):g} s on"
         )
         if drawn.settling is not None:
+            settled = q.mission.tolerance
             says += (
-                f"; |bv| <= {float(q.attitude):g} and |w| <= {float(q.rate):g} rad/s for good after "
-                f"{digits_above(drawn.settling, DIGITS)} s"
+                f"; |bv| <= {float(settled.attitude):g} and |w| <= {float(settled.rate):g} rad/s for good "
+                f"after {digits_above(drawn.settling, DIGITS)} s"
             )
         says += f", {_quantifiers(q)}"
     return Claim(
@@ -191,14 +192,16 @@ def _has_filter(question: RobustQuestion) -> bool:
 
 
 def _quantifiers(q: RobustQuestion) -> str:
-    start = f"2 acos(b0) <= {float(q.max_angle_deg):.6g} deg"
-    if q.max_rate is not None:
-        start += f", |w(0)| <= {float(q.max_rate):.6g} rad/s"
-    if q.max_weighted_rate is not None:
-        start += f", |Omega(0)|_J0 <= {float(q.max_weighted_rate):.6g} sqrt(kg m^2) rad/s"
-    elif q.max_rate is None:
+    starts = q.mission.starts
+    start = f"2 acos(b0) <= {float(starts.max_angle_deg):.6g} deg"
+    if starts.max_rate is not None:
+        start += f", |w(0)| <= {float(starts.max_rate):.6g} rad/s"
+    if starts.max_weighted_rate is not None:
+        start += f", |Omega(0)|_J0 <= {float(starts.max_weighted_rate):.6g} sqrt(kg m^2) rad/s"
+    elif starts.max_rate is None:
         start += ", at rest"
-    return f"from every start with {start}, for {covered_words(q.uncertainty)}; the controller uses J0 and g"
+    covered = covered_words(q.mission.uncertainty)
+    return f"from every start with {start}, for {covered}; the controller uses J0 and g"
 
 
 def _when(floor: RobustFloor) -> str:
@@ -210,14 +213,14 @@ def _shortfall(floor: RobustFloor) -> tuple[str, str]:
     q = floor.question
     at = floor.failed_at
     where = f"from t = {float(at):.4g} s" if at is not None else "as a repeating bound"
-    reason = f"with {', '.join(q.uncertainty.channels)} together nothing could be proved {where}"
-    enough = [name for name in q.uncertainty.channels if _is_proved_without(q, name)]
+    reason = f"with {', '.join(q.mission.uncertainty.channels)} together nothing could be proved {where}"
+    enough = [name for name in q.mission.uncertainty.channels if _is_proved_without(q, name)]
     if enough:
         return (
             reason,
             f"without {' or without '.join(enough)} it is proved: narrow it, or narrow the initial set",
         )
-    if _is_proved(replace(q, uncertainty=NOMINAL)):
+    if _is_proved(q.about(NOMINAL)):
         return reason, "with nothing uncertain it is proved: narrow the uncertainty, or the initial set"
     return reason, "not even with nothing uncertain could it be proved: narrow the initial set first"
 
@@ -225,7 +228,7 @@ def _shortfall(floor: RobustFloor) -> tuple[str, str]:
 def _is_proved_without(q: RobustQuestion, channel: str) -> bool:
     default = getattr(NOMINAL, channel)
     changes: dict[str, Any] = {channel: default}
-    return _is_proved(replace(q, uncertainty=replace(q.uncertainty, **changes)))
+    return _is_proved(q.about(replace(q.mission.uncertainty, **changes)))
 
 
 def _is_proved(q: RobustQuestion) -> bool:
@@ -233,7 +236,7 @@ def _is_proved(q: RobustQuestion) -> bool:
         floor = certify_robust_floor(q)
     except ValueError:
         return False
-    return floor.failed_at is None and (floor.repeats or q.schedule.period is None)
+    return floor.failed_at is None and (floor.repeats or q.mission.schedule.period is None)
 
 
 def _undecided(

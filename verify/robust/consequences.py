@@ -84,7 +84,8 @@ def consequences(floor: RobustFloor) -> Consequences:
     moments = [(pipe, list(_moments(part, pipe))) for part, pipe in floor.parts]
     tails = [pipe.tail for _, pipe in floor.parts if pipe.tail is not None]
     decays = floor.repeats and all(tail.ratios for tail in tails)
-    times = [_settled(rows, pipe, float(q.attitude), float(q.rate), floor) for pipe, rows in moments]
+    attitude, rate = float(q.mission.tolerance.attitude), float(q.mission.tolerance.rate)
+    times = [_settled(rows, pipe, attitude, rate, floor) for pipe, rows in moments]
     later = [m for _, rows in moments for m in rows if m.repeats]
     ultimate = None
     if floor.repeats and not decays:
@@ -122,7 +123,7 @@ def _settled(
     moments: list[_Moment], pipe: Flowpipe, attitude: float, rate: float, floor: RobustFloor
 ) -> float | None:
     """Time after which every box is within the tolerances; None if the bounds end outside."""
-    tail, period, last = pipe.tail, floor.question.schedule.period, 0.0
+    tail, period, last = pipe.tail, floor.question.mission.schedule.period, 0.0
     for m in moments:
         excess = max(m.attitude / attitude, m.rate / rate) * OUTWARD
         if excess <= 1:

@@ -37,17 +37,17 @@ def channel_margins(
     is_proved : Callable[[RobustQuestion], bool]
         Tries another.
     """
-    for name in question.uncertainty.channels:
+    for name in question.mission.uncertainty.channels:
 
         def holds(extra: Fraction, name: str = name) -> bool:
             try:
-                other = replace(question, uncertainty=_grown(question.uncertainty, name, 1 + extra))
+                other = question.about(_grown(question.mission.uncertainty, name, 1 + extra))
             except ValueError:
                 return False
             return is_proved(other)
 
         found = greatest_certified(holds, Fraction(1, 2), limit=MOST - 1, steps=3)
-        size = _size(getattr(question.uncertainty, name)) * (1 + found.certified)
+        size = _size(getattr(question.mission.uncertainty, name)) * (1 + found.certified)
         yield replace(found, certified=size).quantity(f"robust_{name}", UNITS.get(name, ""), LABELS[name])
 
 

@@ -3,6 +3,7 @@
 from fractions import Fraction as F
 from math import degrees
 
+import missions
 import pytest
 from intermit.models.rigid_body import RigidBody
 from intermit.models.uncertainty import Uncertainty
@@ -10,7 +11,7 @@ from intermit.verify.filter.certify import certify_floor
 from intermit.verify.filter.comparison import BodyBounds
 from intermit.verify.filter.recognise import NoComparisonError
 from intermit.verify.filter.sets import InitialSet
-from intermit.verify.robust.answer import RobustQuestion, certify_robust_floor
+from intermit.verify.robust.answer import certify_robust_floor
 from intermit.verify.robust.consequences import consequences
 from intermit.verify.robust.inertia_set import relative_error
 from robust_attack import BODY, LAW, SCHEDULE, TOLERANCE, attack, question
@@ -97,7 +98,7 @@ def test_a_law_of_other_equations_is_refused():
     from intermit.models.laws import QuaternionPD
 
     with pytest.raises(NoComparisonError):
-        certify_robust_floor(RobustQuestion(
+        certify_robust_floor(missions.robust(
             law=QuaternionPD(F(1), F(1)), body=BODY, schedule=SCHEDULE, uncertainty=Uncertainty(),
             max_angle_deg=F(10),
         ))  # fmt: skip
