@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, final
 
 from ..reports.numbers import write
 from ..study.claims.entries import quantity_entry
-from ..study.claims.keys import order_of
+from ..verify.claim_table import order_of
 from ..verify.verdict import Claim, Quantity, Verdict, Witness
 
 if TYPE_CHECKING:

@@ -25,7 +25,7 @@ def run(
 ) -> None:
     """State a claim with its numbers, its evidence and its source; without a key, list them all."""
     del debug
-    from ..study.claims.keys import CLAIM_KEYS
+    from ..verify.claim_table import CLAIM_KEYS
     from .console import output
     from .explain_page import print_claim, print_found, print_keys
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from ..study.claims.keys import CLAIM_KEYS, ClaimKey
+from ..verify.claim_table import CLAIM_KEYS, ClaimKey
 from ..verify.verdict import Claim, Verdict
 from .claim_tables import STYLES, plain_table, quantity_text, witness_text
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
@@ -10,25 +10,22 @@ from typing import final
 
 import numpy as np
 
-from ...models.closed_loop import close_loop
 from ...models.laws import Law
 from ...models.types import Progress, silent
 from ...scenario import LawChoice, Scenario
+from ...verify.claim_table import CLAIM_KEYS, order_of, stated
 from ...verify.filter.answer import FloorAnswer, answer
 from ...verify.filter.claims import torque_quantities
 from ...verify.filter.over_time import BoundsOverTime, bounds_over_time
-from ...verify.filter.recognise import follows_filter
 from ...verify.filter.torque_excess import refuted_limit
-from ...verify.lyapunov.claims import lyapunov_claims
 from ...verify.robust.claims import robust_claims
 from ...verify.robust.found import MembersFound, fly_members
 from ...verify.sampling import SampledDerivative, with_samples
-from ...verify.schedule.filter_start import filter_start_claim
 from ...verify.verdict import Claim, Quantity, Verdict
-from ..claims.keys import CLAIM_KEYS, order_of
 from ..claims.known_inertia import say_inertia
 from ..simulated_run import Run, RunFigures
 from .filter_question import floor_question, is_certified, robust_question
+from .makers import algebraic_claims
 from .margins import convergence_margins, with_margins
 from .sampled import reference_floor, sample_law
 from .why_floor import floor_note
@@ -124,13 +121,11 @@ def decide(
     tell = progress if progress is not None else silent
     law = choice.build()
     tell("V' as a polynomial", 0.0)
-    claims = {claim.key: claim for claim in _algebraic_claims(scenario, law)}
+    claims = {claim.key: claim for claim in algebraic_claims(scenario, law)}
     tell("floor of R", 0.2)
     question = floor_question(scenario, law, seen, search=options.search)
     found = answer(question)
     claims |= {claim.key: claim for claim in found.claims}
-    if "R" not in (state.name for state in law.controller_states):
-        claims.pop("filter.floor", None)
     _add_torque(claims, found)
     if not scenario.uncertainty.is_nominal:
         tell("every body of the uncertainty", 0.45)
@@ -189,13 +184,6 @@ def findings(decided: Decided, margins: tuple[Quantity, ...], sampled: Sampled) 
     return Findings(ordered, decided.reference_floor, decided.curves, found, notes)
 
 
-def decided_claims(scenario: Scenario, law: Law) -> tuple[Claim, ...]:
-    """Claims about one law that exact means decide, with their certificates; no samples, no simulation."""
-    found = answer(floor_question(scenario, law, RunFigures(), search=False))
-    robust = () if scenario.uncertainty.is_nominal else robust_claims(robust_question(scenario, law))
-    return say_inertia((*_algebraic_claims(scenario, law), *found.claims, *robust), scenario, law)
-
-
 def _members(scenario: Scenario, law: Law) -> MembersFound:
     """Extreme members flown from the scenario's start."""
     start = np.concatenate([scenario.initial.quaternion, scenario.initial.rate])
@@ -210,18 +198,6 @@ def _members(scenario: Scenario, law: Law) -> MembersFound:
     )
 
 
-def _algebraic_claims(scenario: Scenario, law: Law) -> Iterator[Claim]:
-    """Claims about R(0), and about the law's storage function over the inertia's whole tolerance."""
-    yield from _filter_claims(scenario, law)
-    mission = scenario.mission
-    yield from lyapunov_claims(
-        law,
-        mission.body,
-        tolerance=mission.inertia_tolerance,
-        schedule=mission.schedule,
-    )
-
-
 def _add_torque(claims: dict[str, Claim], found: FloorAnswer) -> None:
     """Without a limit to hold it against, the certified torque bound stands with the convergence."""
     proved = claims.get("filter.floor", claims["convergence"])
@@ -229,14 +205,6 @@ def _add_torque(claims: dict[str, Claim], found: FloorAnswer) -> None:
         convergence = claims["convergence"]
         quantities = (*convergence.quantities, *torque_quantities(found.torque))
         claims["convergence"] = replace(convergence, quantities=quantities)
-
-
-def _filter_claims(scenario: Scenario, law: Law) -> Iterator[Claim]:
-    """Claims about the filter state, for a law whose state R is the persistence filter's."""
-    start = next((state.initial for state in law.controller_states if state.name == "R"), Fraction(0))
-    decay = law.parameters.get("lambda", Fraction(0))
-    if start > 0 and decay > 0 and follows_filter(close_loop(law)):
-        yield filter_start_claim(scenario.schedule, decay=decay, initial=start)
 
 
 def _add_samples(claims: dict[str, Claim], samples: SampledDerivative) -> None:
@@ -250,13 +218,10 @@ def _add_samples(claims: dict[str, Claim], samples: SampledDerivative) -> None:
 
 def _open(key: str) -> Claim:
     """A claim that has samples under it and no proof."""
-    entry = CLAIM_KEYS[key]
-    return Claim(
-        key=key,
-        title=entry.title,
-        statement=entry.says,
-        verdict=Verdict.UNDECIDED,
+    return stated(
+        key,
+        CLAIM_KEYS[key].says,
+        Verdict.UNDECIDED,
         reason="samples are no proof",
         next_step="write the law with + - * / alone: its V' is then a polynomial, and can be proved",
-        source=entry.source,
     )

@@ -10,9 +10,9 @@ from ...errors import InputError
 from ...reports.content.blocks import Axis, Chart
 from ...reports.summary import Shown, Summary
 from ...scenario import Scenario
+from ...verify.claim_table import order_of
 from ...verify.verdict import Claim, Verdict
 from ..claims.counting import exit_code, sentence
-from ..claims.keys import order_of
 from ..plots import TIME, components, draw, needed, windows_of
 from ..simulation import Simulation
 from .case import Case

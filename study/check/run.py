@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from ...models.types import Progress, silent
 from ...scenario import Scenario
-from ...verify.linear.stability import stability_claim
-from ...verify.schedule.excitation import excitation_claim
-from ...verify.schedule.facts import schedule_claims
-from ...verify.verdict import Claim
 from ..claims.counting import count, counted_keys
 from ..options import CheckOptions
 from ..simulated_run import run_law, seen_in
 from .case import Case, CaseOptions
+from .makers import scenario_claims
 from .result import CheckStudy
 from .workers import crew
 
@@ -47,11 +44,3 @@ def run_check(
     study = CheckStudy(scenario, schedule, tuple(cases))
     tell("done", 1.0)
     return study
-
-
-def scenario_claims(scenario: Scenario) -> tuple[Claim, ...]:
-    """Claims about the schedule, whatever the law; and about the linear plant through it, if one is given."""
-    choice = scenario.schedule_choice
-    facts = schedule_claims(choice.schedule, overruns_as_printed=choice.overruns_as_printed)
-    plant = () if scenario.linear is None else (stability_claim(scenario.linear),)
-    return (*facts, excitation_claim(choice.schedule, scenario.check.pe_window), *plant)

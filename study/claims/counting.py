@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from ...scenario import Scenario, ScenarioError
+from ...verify.claim_table import CLAIM_KEYS
 from ...verify.verdict import Claim, Verdict
-from .keys import CLAIM_KEYS
 
 
 def counted_keys(scenario: Scenario) -> frozenset[str]:

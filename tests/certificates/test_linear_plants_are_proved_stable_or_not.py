@@ -12,7 +12,7 @@ from intermit.cli.app import run
 from intermit.models.linear import LinearPlant
 from intermit.models.schedule import Hermite, Window, build_schedule
 from intermit.scenario import load_scenario
-from intermit.study.check.run import scenario_claims
+from intermit.study.check.makers import scenario_claims
 from intermit.verify import checker
 from intermit.verify.certificates import as_text, certificate_text
 from intermit.verify.certificates.schedule import schedule_data

@@ -13,9 +13,9 @@ from pathlib import Path
 import pytest
 from intermit.reports.record import read_record
 from intermit.scenario import load_scenario
-from intermit.study.check.case import decided_claims
-from intermit.study.claims.keys import CLAIM_KEYS
+from intermit.study.check.makers import decided_claims
 from intermit.study.claims.known_inertia import WIDENED
+from intermit.verify.claim_table import CLAIM_KEYS
 
 ONE_LAW = '[[law]]\ntype = "persistence-filter"\n'
 Run = Callable[..., tuple[int, str, str]]

@@ -91,7 +91,7 @@ def answer(question: FloorQuestion) -> FloorAnswer:
         certificate=certificate,
     )
     claims = [convergence_claim(facts, found, **tolerances)]
-    if floor is None or floor.system.floor_component is not None:
+    if any(state.name == "R" for state in q.law.controller_states):  # of other laws R says nothing
         claims.insert(0, floor_claim(facts))
     if q.mission.limit is not None:
         claims.append(torque_claim(facts, torque, q.mission.limit, q.run_peak))

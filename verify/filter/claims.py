@@ -16,6 +16,7 @@ from ...models.apart import apart
 from ...models.mission import TorqueLimit
 from ...models.norms import Norm
 from ..certificates.format import Certificate
+from ..claim_table import CLAIM_KEYS, stated
 from ..exact.rounding import digits_above, digits_below
 from ..schedule.zero_runs import longest_zero_run
 from ..verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict
@@ -25,10 +26,10 @@ from .convergence import Convergence
 from .torque_bound import TorqueBound
 from .worst_found import WorstFound
 
-PAGE = "docs/theory-floor.md"
+PAGE = CLAIM_KEYS["filter.floor"].page
 FORGOTTEN = 10
 """Lambda times an off-time after which what is left of R, below 1e-4 of it, is why no step is proved."""
-MUELLER = "comparison theorem of Mueller and Walter; docs/theory-floor.md"
+MUELLER = CLAIM_KEYS["filter.floor"].source
 
 
 @final
@@ -58,12 +59,11 @@ class FloorFacts:
 
 def floor_claim(facts: FloorFacts) -> Claim:
     """Claim "filter.floor": R(t) >= R_min > 0 from every start of the set."""
-    title, floor = "R stays above a floor", facts.floor
+    floor = facts.floor
     quantities = _other_answers(facts)
     if floor is None:
         return _undecided(
             "filter.floor",
-            title,
             "R(t) >= R_min > 0",
             facts.no_system,
             facts.no_system_step,
@@ -73,7 +73,7 @@ def floor_claim(facts: FloorFacts) -> Claim:
     if not reaches_far_enough(floor):
         reason, step = _shortfall(floor)
         statement = f"R(t) >= R_min > 0 {asked}, from every start with {floor.initial.description}"
-        return _undecided("filter.floor", title, statement, reason, step, quantities)
+        return _undecided("filter.floor", statement, reason, step, quantities)
     asked = _covered(floor)
     certified = Quantity(
         "certified_floor",
@@ -84,35 +84,31 @@ def floor_claim(facts: FloorFacts) -> Claim:
         True,
         "lower",
     )
-    return Claim(
-        key="filter.floor",
-        title=title,
-        statement=(
-            f"R(t) >= {_down(floor.value)} s {asked}, from every start with {floor.initial.description}"
-        ),
-        verdict=Verdict.PROVED,
-        evidence=(_certificate(facts, floor), *_search_evidence(facts)),
-        quantities=(certified, *quantities),
-        source=MUELLER,
+    return stated(
+        "filter.floor",
+        (f"R(t) >= {_down(floor.value)} s {asked}, from every start with {floor.initial.description}"),
+        Verdict.PROVED,
+        (_certificate(facts, floor), *_search_evidence(facts)),
+        (certified, *quantities),
     )
 
 
 def convergence_claim(facts: FloorFacts, found: Convergence | None, attitude: float, rate: float) -> Claim:
     """Claim "convergence": error angle and rate go to zero within a proved envelope."""
-    title, floor = "attitude and rate converge", facts.floor
+    floor = facts.floor
     general = "error angle and rate go to zero from every start of the initial set"
     if floor is None:
-        return _undecided("convergence", title, general, facts.no_system, facts.no_system_step)
+        return _undecided("convergence", general, facts.no_system, facts.no_system_step)
     if found is None:
-        return _undecided("convergence", title, general, *_shortfall(floor))
+        return _undecided("convergence", general, *_shortfall(floor))
     quantities = _reach_quantities(floor, found)
     if floor.schedule.period is None:
         reason = "the table is finite: after its last window nothing acts, so no limit exists to speak of"
         step = f"give the schedule a period if it repeats; the proved bounds stand {_covered(floor)}"
-        return _undecided("convergence", title, general, reason, step, quantities)
+        return _undecided("convergence", general, reason, step, quantities)
     if not found.converges:
         reason, step = _shortfall(floor)
-        return _undecided("convergence", title, general, reason, step)
+        return _undecided("convergence", general, reason, step)
     period = floor.schedule.period
     statement = (
         f"from every start with {floor.initial.description}, the bounds of sqrt(1 - b0) and |Omega|_J "
@@ -125,15 +121,7 @@ def convergence_claim(facts: FloorFacts, found: Convergence | None, attitude: fl
         )
     system = floor.system
     why = (Evidence(EvidenceKind.THEOREM, system.why_it_converges, PAGE),) if system.why_it_converges else ()
-    return Claim(
-        key="convergence",
-        title=title,
-        statement=statement,
-        verdict=Verdict.PROVED,
-        evidence=(_certificate(facts, floor), *why),
-        quantities=quantities,
-        source=PAGE,
-    )
+    return stated("convergence", statement, Verdict.PROVED, (_certificate(facts, floor), *why), quantities)
 
 
 def limit_words(limit: TorqueLimit) -> str:
@@ -151,37 +139,34 @@ def torque_claim(
 
     `seen` is the largest applied torque of the scenario's own run in that norm, N m, for the reason.
     """
-    title = "applied torque within its limit"
     floor, norm = facts.floor, limit.norm
     statement = limit_words(limit)
     if floor is None:
-        return _undecided("torque.limit", title, statement, facts.no_system, facts.no_system_step)
+        return _undecided("torque.limit", statement, facts.no_system, facts.no_system_step)
     where = f"from every start with {floor.initial.description}"
     if bound is None or not reaches_far_enough(floor):
         reason, step = _shortfall(floor)
-        return _undecided("torque.limit", title, f"{statement} {where}", reason, step)
+        return _undecided("torque.limit", f"{statement} {where}", reason, step)
     statement += f" {_covered(floor)}, {where}"
     quantities = torque_quantities(bound)
     if not isfinite(bound.applied):
         reason = f"the certified floor of R, {_down(floor.value)} s, lets the gain grow beyond all numbers"
-        return _undecided("torque.limit", title, statement, reason, _filter_step(floor), quantities)
+        return _undecided("torque.limit", statement, reason, _filter_step(floor), quantities)
     if not norm.limits_torque:
         reason = f"what is certified bounds the torque's length: what {norm.name} need for it is not bounded"
         step = "give the limit as one of the torque's components or length, N m"
-        return _undecided("torque.limit", title, statement, reason, step, quantities)
+        return _undecided("torque.limit", statement, reason, step, quantities)
     # the torque's length, which is bounded, is never below its peak
     if Fraction(bound.applied) <= limit.torque:
         reserve = float(limit.torque) - bound.applied
         margin = Quantity("torque_reserve", reserve, reserve, "N m", "reserve")
-        return Claim(
-            key="torque.limit",
-            title=title,
-            statement=statement,
-            verdict=Verdict.PROVED,
-            evidence=(_certificate(facts, floor),),
-            quantities=quantities,
-            margins=(margin,),
-            source=PAGE,
+        return stated(
+            "torque.limit",
+            statement,
+            Verdict.PROVED,
+            (_certificate(facts, floor),),
+            quantities,
+            (margin,),
         )
     reason = f"the certified bound {_up(bound.applied)} N m exceeds the limit"
     largest = _largest_found(facts, norm, seen)
@@ -193,7 +178,7 @@ def torque_claim(
             reason += f" (the bound is {bound.applied / value:.2g} times it)"
     gains = ", ".join(floor.law.parameters)
     step = f"narrow the initial set, lower the gains ({gains}), or raise the limit"
-    return _undecided("torque.limit", title, statement, reason, step, quantities)
+    return _undecided("torque.limit", statement, reason, step, quantities)
 
 
 def _largest_found(facts: FloorFacts, norm: Norm, seen: float | None) -> tuple[float, str] | None:
@@ -353,21 +338,13 @@ def _filter_step(floor: FilterLowerBound) -> str:
 
 def _undecided(
     key: str,
-    title: str,
     statement: str,
     reason: str,
     next_step: str,
     quantities: tuple[Quantity, ...] = (),
 ) -> Claim:
-    return Claim(
-        key=key,
-        title=title,
-        statement=statement,
-        verdict=Verdict.UNDECIDED,
-        quantities=quantities,
-        reason=reason,
-        next_step=next_step,
-        source=PAGE,
+    return stated(
+        key, statement, Verdict.UNDECIDED, quantities=quantities, reason=reason, next_step=next_step
     )
 
 

@@ -21,6 +21,7 @@ from ...models.linear import LinearPlant
 from ...models.types import Array
 from .. import checker
 from ..certificates.format import Certificate, certificate_text
+from ..claim_table import CLAIM_KEYS, stated
 from ..exact.matrix import Matrix, identity, is_positive_definite, of, rows
 from ..exact.rational import rational
 from ..exact.rational_quantity import exponential_quantity, rational_quantity
@@ -33,7 +34,8 @@ BACKING_OFF = (1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
 MAX_STEPS = 20_000
 """Steps of the enclosure that are tried; each is about a millisecond for a small plant."""
 __all__ = ["SpectralRadius", "plant_data", "spectral_radius", "stability_claim"]
-SOURCE = "Floquet's theorem; Stein's inequality"
+KEY = "linear.stable"
+SOURCE = CLAIM_KEYS[KEY].source
 
 
 @final
@@ -123,35 +125,34 @@ def steps_needed(plant: LinearPlant, scale: Sequence[Fraction]) -> int:
 
 def stability_claim(plant: LinearPlant) -> Claim:
     """Claim "linear.stable": every solution of the plant tends to zero."""
-    title = "linear plant stable through the windows"
     statement = "every Floquet multiplier of x' = (A - g(t) B K) x lies inside the unit circle"
     if plant.schedule.period is None:
-        return Claim(
-            "linear.stable", title, statement, Verdict.UNDECIDED, source=SOURCE,
+        return stated(
+            KEY, statement, Verdict.UNDECIDED,
             reason="the schedule is a finite table", next_step="give it a period",
         )  # fmt: skip
     growing = growing_part(plant)
     if growing is not None:
-        return _refuted_by_volume(growing, title, statement)
+        return _refuted_by_volume(growing, statement)
     falling = falling_function(plant)
     try:
         found = spectral_radius(plant)
     except OverflowError as error:
         if falling is not None:
-            return _proved_by_function(falling, (), title, statement)
-        return Claim(
-            "linear.stable", title, statement, Verdict.UNDECIDED, source=SOURCE,
+            return _proved_by_function(falling, (), statement)
+        return stated(
+            KEY, statement, Verdict.UNDECIDED,
             reason=str(error), next_step="leave out states that are fast and stable by themselves",
         )  # fmt: skip
     quantities = _quantities(found)
     if found.high is not None and found.high <= 1:
         evidence = _evidence(found, "P > 0 with M'PM < r^2 P")
-        return Claim(
-            "linear.stable", title, statement, Verdict.PROVED, (evidence,), quantities,
-            (rational_quantity("1 - spectral radius", 1 - found.high, 1 - found.low),), source=SOURCE,
+        return stated(
+            KEY, statement, Verdict.PROVED, (evidence,), quantities,
+            (rational_quantity("1 - spectral radius", 1 - found.high, 1 - found.low),),
         )  # fmt: skip
     if falling is not None:
-        return _proved_by_function(falling, quantities, title, statement)
+        return _proved_by_function(falling, quantities, statement)
     if found.low >= 1:
         violation = rational_quantity("spectral radius - 1", found.low - 1, (found.high or found.low) - 1)
         if violation.low > 0:
@@ -162,12 +163,12 @@ def stability_claim(plant: LinearPlant) -> Claim:
             }
             words = "started here the state grows by more than the spectral radius's bound every period"
             evidence = _evidence(found, "M'PM > r^2 P with x'Px > 0")
-            return Claim(
-                "linear.stable", title, statement, Verdict.REFUTED, (evidence,), quantities,
-                witness=Witness(words, values, violation), source=SOURCE,
+            return stated(
+                KEY, statement, Verdict.REFUTED, (evidence,), quantities,
+                witness=Witness(words, values, violation),
             )  # fmt: skip
-    return Claim(
-        "linear.stable", title, statement, Verdict.UNDECIDED, quantities=quantities, source=SOURCE,
+    return stated(
+        KEY, statement, Verdict.UNDECIDED, quantities=quantities,
         reason=_not_told(found),
         next_step="change a gain or an on-time slightly and see on which side it falls",
     )  # fmt: skip
@@ -182,7 +183,7 @@ def _not_told(found: SpectralRadius) -> str:
     return f"the largest multiplier's modulus lies between {float(found.low):.9g} and {float(found.high):.9g}"
 
 
-def _refuted_by_volume(found: Certificate, title: str, statement: str) -> Claim:
+def _refuted_by_volume(found: Certificate, statement: str) -> Claim:
     """REFUTED: a part of the plant has multipliers whose product is at least 1 in modulus."""
     count = len(found.witness["W"])
     name = "modulus" if count == 1 else f"geometric mean of the moduli of {count}"
@@ -193,19 +194,17 @@ def _refuted_by_volume(found: Certificate, title: str, statement: str) -> Claim:
     summary = "a carried part whose volume does not shrink (Liouville), checked by the stand-alone checker"
     evidence = Evidence(EvidenceKind.CERTIFICATE, summary, SOURCE, {"certificate": found})
     words = "y = W x moves by itself, and its multipliers multiply to 1 or more"
-    return Claim(
-        "linear.stable", title, statement, Verdict.REFUTED, (evidence,),
-        witness=Witness(words, values, violation), source=SOURCE,
+    return stated(
+        KEY, statement, Verdict.REFUTED, (evidence,),
+        witness=Witness(words, values, violation),
     )  # fmt: skip
 
 
-def _proved_by_function(
-    found: Certificate, quantities: tuple[Quantity, ...], title: str, statement: str
-) -> Claim:
+def _proved_by_function(found: Certificate, quantities: tuple[Quantity, ...], statement: str) -> Claim:
     """PROVED: x'Px falls along every solution."""
     summary = "x'Px falls at every gain or over the period, checked by the stand-alone checker"
     evidence = Evidence(EvidenceKind.CERTIFICATE, summary, SOURCE, {"certificate": found})
-    return Claim("linear.stable", title, statement, Verdict.PROVED, (evidence,), quantities, source=SOURCE)
+    return stated(KEY, statement, Verdict.PROVED, (evidence,), quantities)
 
 
 def _proved(

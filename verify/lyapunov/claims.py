@@ -10,6 +10,7 @@ from ...models.laws import Law
 from ...models.rigid_body import RigidBody
 from ...models.schedule import Schedule
 from ..certificates.format import Certificate
+from ..claim_table import stated
 from ..exact.matrix import Rows
 from ..verdict import Claim, Verdict
 from .candidates import NoStorageError, candidate, storage_step
@@ -74,12 +75,5 @@ def certificates_of(claims: Iterable[Claim]) -> tuple[Certificate, ...]:
 
 
 def _no_storage(reason: str, next_step: str) -> Claim:
-    return Claim(
-        key="lyapunov.derivative",
-        title="V' <= 0",
-        statement="V' <= 0 at every attitude and rate",
-        verdict=Verdict.UNDECIDED,
-        reason=reason,
-        next_step=next_step,
-        counted=False,
-    )
+    statement = "V' <= 0 at every attitude and rate"
+    return stated("lyapunov.derivative", statement, Verdict.UNDECIDED, reason=reason, next_step=next_step)

@@ -16,6 +16,7 @@ from itertools import product
 
 from ...models.rigid_body import RigidBody
 from ..certificates.format import Certificate
+from ..claim_table import CLAIM_KEYS, stated
 from ..exact.bisection import bisected
 from ..exact.matrix import (
     Matrix,
@@ -30,9 +31,6 @@ from ..verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict, Witness
 from .definiteness import Direction, factors, negative_direction
 from .forms import inertia_data
 
-PAPER = "Ram & Akella, AAS 21-402, condition on lambda"
-SHARP = "docs/theory-lyapunov.md: largest value of Q over the rate, at b0 -> 1"
-
 
 def paper_condition(lam: Fraction, body: RigidBody, *, tolerance: Rows | None = None) -> Claim:
     """Claim lambda > max(1/(2 Jmin), 1/2) (key lambda.paper)."""
@@ -41,13 +39,13 @@ def paper_condition(lam: Fraction, body: RigidBody, *, tolerance: Rows | None = 
     if lam < half:
         violation = rational_quantity("1/2 - lambda", half - lam, unit="1/s")
         witness = Witness("lambda itself is below 1/2", {"lambda": float(lam)}, violation)
-        return _claim("lambda.paper", statement, Verdict.REFUTED, PAPER, witness=witness)
+        return _claim("lambda.paper", statement, Verdict.REFUTED, witness=witness)
     found = _refuting(body, tolerance, lambda J: shifted(J, 2 * lam, Fraction(1)), strict=True)
     if found is not None:
         J, x, value = found
-        return _not_met("lambda.paper", statement, PAPER, J, x, -value, "x'x - 2 lambda x'Jx")
+        return _not_met("lambda.paper", statement, J, x, -value, "x'x - 2 lambda x'Jx")
     if lam == half:
-        return _at_boundary("lambda.paper", statement, PAPER)
+        return _at_boundary("lambda.paper", statement)
     witness_factors = [
         factors(shifted(J, 2 * lam, Fraction(1))) for J in vertices(body.exact_inertia, tolerance)
     ]
@@ -55,9 +53,7 @@ def paper_condition(lam: Fraction, body: RigidBody, *, tolerance: Rows | None = 
         "paper-condition", _data(lam, body, tolerance), {}, {"factors": witness_factors}
     )
     margin = rational_quantity("lambda - 1/2", lam - half, unit="1/s")
-    return _claim(
-        "lambda.paper", statement, Verdict.PROVED, PAPER, certificate=certificate, margins=(margin,)
-    )
+    return _claim("lambda.paper", statement, Verdict.PROVED, certificate=certificate, margins=(margin,))
 
 
 def sharp_condition(
@@ -69,15 +65,13 @@ def sharp_condition(
         violation = rational_quantity("threshold - lambda", Fraction(threshold.low) - lam, unit="1/s")
         witness = Witness("lambda itself is not positive", {"lambda": float(lam)}, violation)
         statement = f"lambda = {float(lam):.9g} 1/s is at least {threshold.low:.9g} 1/s"
-        return _claim(
-            "lambda.sharp", statement, Verdict.REFUTED, SHARP, witness=witness, quantities=(threshold,)
-        )
+        return _claim("lambda.sharp", statement, Verdict.REFUTED, witness=witness, quantities=(threshold,))
     root = "1/(2 sqrt(Jmin))" if weight == 1 else f"sqrt({float(weight):.6g})/(2 sqrt(Jmin))"
     statement = f"lambda = {float(lam):.9g} 1/s is at least {root}, about {threshold.low:.9g} 1/s"
     found = _refuting(body, tolerance, lambda J: shifted(J, 4 * lam**2, weight), strict=False)
     if found is not None:
         J, x, value = found
-        return _not_met("lambda.sharp", statement, SHARP, J, x, -value, "a x'x - 4 lambda^2 x'Jx", threshold)
+        return _not_met("lambda.sharp", statement, J, x, -value, "a x'x - 4 lambda^2 x'Jx", threshold)
     certificate = sharp_certificate(lam, body, weight=weight, tolerance=tolerance)
     low = Fraction(threshold.low), Fraction(threshold.high)
     margin = rational_quantity("lambda - threshold", lam - low[1], lam - low[0], "1/s")
@@ -85,7 +79,6 @@ def sharp_condition(
         "lambda.sharp",
         statement,
         Verdict.PROVED,
-        SHARP,
         certificate=certificate,
         margins=(margin,),
         quantities=(threshold,),
@@ -159,7 +152,6 @@ def _data(lam: Fraction, body: RigidBody, tolerance: Rows | None) -> dict[str, o
 def _not_met(
     key: str,
     statement: str,
-    source: str,
     J: Matrix,
     x: Direction,
     violation: Fraction,
@@ -172,15 +164,14 @@ def _not_met(
         rational_quantity(name, violation),
     )
     quantities = () if threshold is None else (threshold,)
-    return _claim(key, statement, Verdict.REFUTED, source, witness=witness, quantities=quantities)
+    return _claim(key, statement, Verdict.REFUTED, witness=witness, quantities=quantities)
 
 
-def _at_boundary(key: str, statement: str, source: str) -> Claim:
+def _at_boundary(key: str, statement: str) -> Claim:
     return _claim(
         key,
         statement,
         Verdict.UNDECIDED,
-        source,
         reason="lambda lies exactly on the boundary, where the strict inequality fails by nothing",
         next_step="take lambda larger by any amount, or rely on the sharp condition",
     )
@@ -190,7 +181,6 @@ def _claim(
     key: str,
     statement: str,
     verdict: Verdict,
-    source: str,
     *,
     certificate: Certificate | None = None,
     witness: Witness | None = None,
@@ -200,23 +190,20 @@ def _claim(
     next_step: str = "",
 ) -> Claim:
     evidence: tuple[Evidence, ...] = ()
+    source = CLAIM_KEYS[key].source
     if certificate is not None:
         summary = "exact elimination shows the matrix of the condition positive"
         evidence = (Evidence(EvidenceKind.CERTIFICATE, summary, source, {"certificate": certificate}),)
     elif witness is not None:
         evidence = (Evidence(EvidenceKind.WITNESS, "evaluated exactly in rationals", source),)
-    titles = {"lambda.paper": "paper's condition on lambda", "lambda.sharp": "sharp condition on lambda"}
-    return Claim(
-        key=key,
-        title=titles[key],
-        statement=statement,
-        verdict=verdict,
-        evidence=evidence,
-        quantities=quantities,
-        margins=margins,
+    return stated(
+        key,
+        statement,
+        verdict,
+        evidence,
+        quantities,
+        margins,
         witness=witness,
         reason=reason,
         next_step=next_step,
-        source=source,
-        counted=False,
     )

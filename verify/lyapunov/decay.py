@@ -10,6 +10,7 @@ from ...models.rigid_body import RigidBody
 from ...models.schedule import Schedule
 from ...models.schedule.polynomial import bernstein
 from ..certificates.format import Certificate
+from ..claim_table import CLAIM_KEYS, stated
 from ..exact.matrix import Rows
 from ..exact.rational_quantity import rational_quantity
 from ..verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict, Witness
@@ -20,7 +21,7 @@ from .falsify import falsify
 from .identity import identity_certificate
 from .refutation import Refutation, counterexample, refute_sign
 
-SOURCE = "docs/theory-lyapunov.md; Ram & Akella, AAS 21-402"
+SOURCE = CLAIM_KEYS["lyapunov.derivative"].source
 
 
 def derivative_claim(
@@ -220,20 +221,13 @@ def _claim(
     reason: str = "",
     next_step: str = "",
 ) -> Claim:
-    titles = {
-        "lyapunov.derivative": "V' <= 0",
-        "lambda.rate": "certified decay rate",
-    }
-    return Claim(
-        key=key,
-        title=titles[key],
-        statement=statement,
-        verdict=verdict,
-        evidence=evidence,
-        quantities=quantities,
+    return stated(
+        key,
+        statement,
+        verdict,
+        evidence,
+        quantities,
         witness=witness,
         reason=reason,
         next_step=next_step,
-        source=SOURCE,
-        counted=False,
     )

@@ -9,6 +9,7 @@ from ...models.closed_loop import ClosedLoop
 from .. import checker
 from ..certificates.format import Certificate, certificate_text
 from ..certificates.program import NotAlgebraicError
+from ..claim_table import CLAIM_KEYS, stated
 from ..exact.direction import rational_quaternion
 from ..exact.matrix import Rows
 from ..exact.rational_quantity import rational_quantity
@@ -17,7 +18,8 @@ from .candidates import Candidate
 from .exact_states import ExactDerivative, ExactState
 from .forms import law_form, storage_form
 
-SOURCE = "docs/theory-lyapunov.md; Ram & Akella, AAS 21-402"
+KEY = "lyapunov.identity"
+SOURCE = CLAIM_KEYS[KEY].source
 TRIES = 20
 
 
@@ -115,15 +117,4 @@ def _claim(
     reason: str = "",
     next_step: str = "",
 ) -> Claim:
-    return Claim(
-        key="lyapunov.identity",
-        title="closed form of V'",
-        statement=statement,
-        verdict=verdict,
-        evidence=evidence,
-        witness=witness,
-        reason=reason,
-        next_step=next_step,
-        source=SOURCE,
-        counted=False,
-    )
+    return stated(KEY, statement, verdict, evidence, witness=witness, reason=reason, next_step=next_step)

@@ -8,6 +8,7 @@ from math import degrees
 from typing import Any
 
 from ...models.uncertainty import NOMINAL
+from ..claim_table import CLAIM_KEYS, stated
 from ..exact.rounding import digits_above, digits_below
 from ..filter.recognise import NoComparisonError
 from ..verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict
@@ -18,12 +19,7 @@ from .found import MembersFound
 from .margins import channel_margins
 from .words import covered_words
 
-PAGE = "docs/theory-robust.md"
-TITLES = {
-    "robust.floor": "R stays above a floor on every body",
-    "robust.convergence": "attitude and rate converge on every body",
-    "robust.ultimate": "attitude and rate stay within a bound on every body",
-}
+PAGE = CLAIM_KEYS["robust.floor"].source
 DIGITS = 6
 
 
@@ -74,14 +70,12 @@ def _floor_claim(floor: RobustFloor, evidence: Evidence, beside: tuple[Quantity,
     value = Quantity(
         "robust_floor", floor.value, floor.value, "s", "R_min certified, every body and start", True, "lower"
     )
-    return Claim(
-        key="robust.floor",
-        title=TITLES["robust.floor"],
+    return stated(
+        "robust.floor",
         statement=f"R(t) >= {digits_below(floor.value, DIGITS)} s {_when(floor)}, {_quantifiers(q)}",
         verdict=Verdict.PROVED,
         evidence=(evidence,),
         quantities=(value, *beside),
-        source=PAGE,
     )
 
 
@@ -115,14 +109,12 @@ def _motion_claim(
                 f"after {digits_above(drawn.settling, DIGITS)} s"
             )
         says += f", {_quantifiers(q)}"
-    return Claim(
-        key=key,
-        title=TITLES[key],
+    return stated(
+        key,
         statement=says,
         verdict=Verdict.PROVED,
         evidence=(evidence,),
         quantities=quantities,
-        source=PAGE,
     )
 
 
@@ -247,13 +239,11 @@ def _undecided(
         "robust.convergence": "error angle and rate go to zero",
         "robust.ultimate": "error angle and rate stay within a bound from some time on",
     }
-    return Claim(
-        key=key,
-        title=TITLES[key],
+    return stated(
+        key,
         statement=f"{general[key]}, {_quantifiers(q)}",
         verdict=Verdict.UNDECIDED,
         reason=reason,
         next_step=step,
         quantities=quantities,
-        source=PAGE,
     )

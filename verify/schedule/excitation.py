@@ -15,6 +15,7 @@ from typing import final
 from ...models.schedule import Schedule, Window
 from ...models.schedule import polynomial as poly
 from ...models.schedule.polynomial import Coefficients
+from ..claim_table import CLAIM_KEYS, stated
 from ..exact.bernstein import least_value
 from ..exact.rational_quantity import rational_quantity, seconds
 from ..verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict, Witness
@@ -22,7 +23,8 @@ from .excitation_screen import MAX_EXACT, screen
 from .moving_integral import MovingIntegral, Segment
 from .zero_runs import default_length, longest_zero_run, missable_windows
 
-SOURCE = "Ram & Akella, AAS 21-402; docs/schedule.md"
+KEY = "schedule.excitation"
+SOURCE = CLAIM_KEYS[KEY].source
 RELATIVE_WIDTH = Fraction(1, 10**12)
 """Largest width of the enclosures of mu1 and mu2, relative to T."""
 
@@ -145,7 +147,7 @@ def excitation_claim(schedule: Schedule, length: Fraction | None = None) -> Clai
     T = default_length(schedule) if length is None else length
     result = excitation(schedule, T)
     within = "" if result.periodic else " within the table"
-    key, title = "schedule.excitation", f"g is persistently exciting{within}"
+    title = f"{CLAIM_KEYS[KEY].title}{within}"
     where = "for ever, since the table repeats" if result.periodic else _finite(schedule)
     statement = f"every interval of {seconds(T)} holds a positive integral of g^2 ({where})"
     evidence = Evidence(
@@ -158,15 +160,13 @@ def excitation_claim(schedule: Schedule, length: Fraction | None = None) -> Clai
     quantities = _quantities(result)
     run = result.zero_run
     if result.least.high == 0 or (run is not None and run.length >= T):
-        return _refuted(key, title, statement, evidence, quantities, result)
+        return _refuted(title, statement, evidence, quantities, result)
     margins = [rational_quantity("slack", T - (run.length if run else 0), unit="s", label="gaps may grow by")]
     missable = missable_windows(schedule, T)
     if missable is not None:
         label = "windows in a row that may be missed"
         margins.append(Quantity("missable_windows", missable, missable, label=label, rigorous=True))
-    return Claim(
-        key, title, statement, Verdict.PROVED, (evidence,), quantities, tuple(margins), source=SOURCE
-    )
+    return stated(KEY, statement, Verdict.PROVED, (evidence,), quantities, tuple(margins), title=title)
 
 
 def _screened(result: Excitation) -> str:
@@ -206,7 +206,6 @@ def _quantities(result: Excitation) -> tuple[Quantity, ...]:
 
 
 def _refuted(
-    key: str,
     title: str,
     statement: str,
     evidence: Evidence,
@@ -222,6 +221,4 @@ def _refuted(
         {"time": float(start), "zero_run": float(length)},
         rational_quantity("zero_run", length, unit="s"),
     )
-    return Claim(
-        key, title, statement, Verdict.REFUTED, (evidence,), quantities, witness=witness, source=SOURCE
-    )
+    return stated(KEY, statement, Verdict.REFUTED, (evidence,), quantities, witness=witness, title=title)

@@ -11,11 +11,11 @@ from __future__ import annotations
 from fractions import Fraction
 
 from ...models.schedule import Schedule
+from ..claim_table import PAPER, stated
 from ..exact.rational_quantity import rational_quantity, seconds
 from ..verdict import Claim, Evidence, EvidenceKind, Quantity, Verdict, Witness
 from .timeline import Action, Jump, Timeline
 
-PAPER = "Ram & Akella, AAS 21-402"
 EXACT = Evidence(
     EvidenceKind.CERTIFICATE,
     "every window, knot and piece compared in exact rational arithmetic",
@@ -60,7 +60,7 @@ def schedule_claims(schedule: Schedule, *, overruns_as_printed: bool = False) ->
 def order_claim(timeline: Timeline) -> Claim:
     """Decide that windows are not empty, in order, and disjoint, the first of the next period included."""
     time, windows = timeline.clock.time, list(timeline.windows)
-    key, title = "schedule.order", "windows ordered and disjoint"
+    key = "schedule.order"
     statement = f"{_count(timeline.schedule)}: in order and disjoint"
     lengths = [off - on for on, off in windows]
     if timeline.schedule.is_periodic:
@@ -70,40 +70,38 @@ def order_claim(timeline: Timeline) -> Claim:
     if trouble is not None:
         on, off = windows[trouble]
         what = f"window {trouble + 1} closes before it opens"
-        return _order_refuted(key, title, statement, what, time(off), time(on - off))
+        return _order_refuted(key, statement, what, time(off), time(on - off))
     trouble = next((i for i, gap in enumerate(gaps) if gap < 0), None)
     if trouble is not None:
         what = f"window {trouble + 1} is still open when the next one opens"
-        return _order_refuted(
-            key, title, statement, what, time(windows[trouble + 1][0]), time(-gaps[trouble])
-        )
+        return _order_refuted(key, statement, what, time(windows[trouble + 1][0]), time(-gaps[trouble]))
     quantities = [rational_quantity("shortest_window", time(min(lengths)), unit="s")]
     margins: tuple[Quantity, ...] = ()
     if gaps:
         quantities.append(rational_quantity("longest_gap", time(max(gaps)), unit="s"))
         label = "windows stay apart while one grows by less than"
         margins = (rational_quantity("shortest_gap", time(min(gaps)), unit="s", label=label),)
-    return Claim(key, title, statement, Verdict.PROVED, (EXACT,), tuple(quantities), margins, source=PAPER)
+    return stated(key, statement, Verdict.PROVED, (EXACT,), tuple(quantities), margins)
 
 
 def smooth_claim(timeline: Timeline) -> Claim:
     """Decide that g is C1 at every knot, from one period to the next and at a table's end."""
-    key, title = "schedule.smooth", "g is C1"
+    key = "schedule.smooth"
     statement = f"g and dg/dt are continuous at all {len(timeline.knots)} knots"
     jump = timeline.first_jump()
     if jump is None:
-        return Claim(key, title, statement, Verdict.PROVED, (EXACT,), source=PAPER)
-    return Claim(key, title, statement, Verdict.REFUTED, (EXACT,), witness=_jump_witness(jump), source=PAPER)
+        return stated(key, statement, Verdict.PROVED, (EXACT,))
+    return stated(key, statement, Verdict.REFUTED, (EXACT,), witness=_jump_witness(jump))
 
 
 def support_claim(timeline: Timeline, *, overruns_as_printed: bool = False) -> Claim:
     """Decide that g is zero outside the windows."""
-    key, title = "schedule.support", "g is zero outside the windows"
+    key = "schedule.support"
     statement = "g(t) = 0 outside the windows, where full thrust is not certain"
     found = timeline.actions(timeline.gaps())
     if found:
         excused = overruns_as_printed and _only_overruns(timeline, found)
-        return _action_refuted(key, title, statement, found, "outside every window", excused)
+        return _action_refuted(key, statement, found, "outside every window", excused)
     margins: tuple[Quantity, ...] = ()
     inner = timeline.inner_margins()
     if inner is not None:
@@ -112,12 +110,12 @@ def support_claim(timeline: Timeline, *, overruns_as_printed: bool = False) -> C
             rational_quantity("opening_margin", opening, unit="s", label="windows may open later by"),
             rational_quantity("closing_margin", closing, unit="s", label="windows may close earlier by"),
         )
-    return Claim(key, title, statement, Verdict.PROVED, (EXACT,), margins=margins, source=PAPER)
+    return stated(key, statement, Verdict.PROVED, (EXACT,), margins=margins)
 
 
 def uncertain_thrust_claim(timeline: Timeline, *, overruns_as_printed: bool = False) -> Claim:
     """Decide that g is zero during thruster_rise before each window and thruster_fall after it."""
-    key, title = "schedule.uncertain-thrust", "g is zero while the thrust is uncertain"
+    key = "schedule.uncertain-thrust"
     schedule = timeline.schedule
     statement = (
         f"g(t) = 0 while the thruster rises ({seconds(schedule.thruster_rise)} before each window) "
@@ -126,8 +124,8 @@ def uncertain_thrust_claim(timeline: Timeline, *, overruns_as_printed: bool = Fa
     found = timeline.actions(timeline.uncertain())
     if found:
         excused = overruns_as_printed and _only_overruns(timeline, found)
-        return _action_refuted(key, title, statement, found, "while the thrust is uncertain", excused)
-    return Claim(key, title, statement, Verdict.PROVED, (EXACT,), source=PAPER)
+        return _action_refuted(key, statement, found, "while the thrust is uncertain", excused)
+    return stated(key, statement, Verdict.PROVED, (EXACT,))
 
 
 def _only_overruns(timeline: Timeline, found: list[Action]) -> bool:
@@ -151,13 +149,13 @@ def _count(schedule: Schedule) -> str:
     return f"{text} in each period of {seconds(schedule.period)}"
 
 
-def _order_refuted(key: str, title: str, statement: str, what: str, at: Fraction, by: Fraction) -> Claim:
+def _order_refuted(key: str, statement: str, what: str, at: Fraction, by: Fraction) -> Claim:
     if by == 0:
         violation, what = Quantity("empty_windows", 1.0, 1.0, rigorous=True), f"{what}: it is empty"
     else:
         violation = rational_quantity("overlap", by, unit="s")
     witness = Witness(f"{what}, at {seconds(at)}", {"time": float(at)}, violation)
-    return Claim(key, title, statement, Verdict.REFUTED, (EXACT,), witness=witness, source=PAPER)
+    return stated(key, statement, Verdict.REFUTED, (EXACT,), witness=witness)
 
 
 def _jump_witness(jump: Jump) -> Witness:
@@ -170,9 +168,7 @@ def _jump_witness(jump: Jump) -> Witness:
     )
 
 
-def _action_refuted(
-    key: str, title: str, statement: str, found: list[Action], where: str, excused: bool
-) -> Claim:
+def _action_refuted(key: str, statement: str, found: list[Action], where: str, excused: bool) -> Claim:
     first = found[0]
     span = f"{seconds(first.interval.on)} to {seconds(first.interval.off)}"
     more = f" (and in {len(found) - 1} more places)" if len(found) > 1 else ""
@@ -182,13 +178,6 @@ def _action_refuted(
         rational_quantity("g", first.value),
     )
     evidence = (EXACT, E9) if excused else (EXACT,)
-    return Claim(
-        key,
-        title,
-        statement,
-        Verdict.REFUTED,
-        evidence,
-        witness=witness,
-        source=PAPER,
-        counted=not excused,
+    return stated(
+        key, statement, Verdict.REFUTED, evidence, witness=witness, counted=False if excused else None
     )

@@ -6,11 +6,12 @@ from fractions import Fraction
 
 from ...models.schedule import Schedule
 from ...models.schedule import polynomial as poly
+from ..claim_table import CLAIM_KEYS, stated
 from ..exact.bernstein import least_value
 from ..exact.rational_quantity import rational_quantity
 from ..verdict import Claim, Evidence, EvidenceKind, Verdict, Witness
 
-SOURCE = "Ram & Akella, AAS 21-402 (erratum E10: the printed bound on R needs this condition on R(0))"
+SOURCE = CLAIM_KEYS["filter.start"].source
 WIDTH = Fraction(1, 10**12)
 
 
@@ -40,7 +41,7 @@ def filter_start_claim(schedule: Schedule, *, decay: Fraction, initial: Fraction
     """
     if initial <= 0 or decay <= 0:
         raise ValueError(f"expected R(0) > 0 and lambda > 0, received {float(initial)} and {float(decay)}")
-    key, title = "filter.start", "filter starts in range"
+    key = "filter.start"
     low, high = (2 * g**2 / decay for g in greatest_gain(schedule))
     statement = f"0 < R(0) = {float(initial):g} s <= 2 max g^2 / lambda = {float(low):.6g} s"
     evidence = Evidence(
@@ -51,18 +52,15 @@ def filter_start_claim(schedule: Schedule, *, decay: Fraction, initial: Fraction
     ceiling = rational_quantity("filter_ceiling", max(low, initial), max(high, initial), "s", "R stays below")
     if initial <= low:
         room = rational_quantity("room", low - initial, high - initial, "s", "R(0) may grow by")
-        return Claim(key, title, statement, Verdict.PROVED, (evidence,), (ceiling,), (room,), source=SOURCE)
+        return stated(key, statement, Verdict.PROVED, (evidence,), (ceiling,), (room,))
     if initial <= high:
         reason, step = "R(0) equals the bound to twelve digits", "change R(0) by one part in 1e11"
-        return Claim(
-            key, title, statement, Verdict.UNDECIDED, (evidence,), (ceiling,),
-            reason=reason, next_step=step, source=SOURCE,
-        )  # fmt: skip
+        return stated(
+            key, statement, Verdict.UNDECIDED, (evidence,), (ceiling,), reason=reason, next_step=step
+        )
     excess = rational_quantity("excess", initial - high, initial - low, "s", "R(0) lies above the bound by")
     witness = Witness("the initial filter state", {"R(0)": float(initial)}, excess)
-    return Claim(
-        key, title, statement, Verdict.REFUTED, (evidence,), (ceiling,), witness=witness, source=SOURCE
-    )
+    return stated(key, statement, Verdict.REFUTED, (evidence,), (ceiling,), witness=witness)
 
 
 def greatest_gain(schedule: Schedule) -> tuple[Fraction, Fraction]:

@@ -1,12 +1,15 @@
-"""Every claim the package makes, by key: what it says in general, on what it rests, what counts.
+"""Every claim the package makes: title, what it says in general, on what it rests, source, what counts.
 
-`intermit explain` reads this; a scenario's `[check] claims` names these keys.
+Deciders make their claims with `stated`, which takes title and source from here; `intermit explain` reads
+this; a scenario's `[check] claims` names these keys; `study/check/makers.py` says who decides them.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import final
+
+from .verdict import Claim, Evidence, Quantity, Verdict, Witness
 
 
 @final
@@ -89,7 +92,7 @@ CLAIM_KEYS: dict[str, ClaimKey] = {
             "The integral of g^2 over every interval of length T is at least mu1 > 0 and at most mu2.",
             "mu1 and mu2 are extremes of an exact piecewise polynomial, enclosed by its Bernstein "
             "coefficients; mu1 > 0 exactly when T exceeds the longest time in which g is zero.",
-            PAPER,
+            PAPER + "; " + _SCHEDULE,
             _SCHEDULE,
             by_law=False,
             counts=True,
@@ -112,7 +115,7 @@ CLAIM_KEYS: dict[str, ClaimKey] = {
             "0 < R(0) <= 2 max g^2 / lambda. With it R <= 2 max g^2 / lambda for ever; without the second "
             "half the bound is max(R(0), 2 max g^2 / lambda).",
             "R' <= -lambda R + 2 g^2.",
-            PAPER + " (erratum E10: the printed bound needs the condition on R(0))",
+            PAPER + " (erratum E10: the printed bound on R needs this condition on R(0))",
             _FLOOR,
             by_law=True,
             counts=False,
@@ -122,7 +125,7 @@ CLAIM_KEYS: dict[str, ClaimKey] = {
             "paper's condition on lambda",
             "lambda > max{1/(2 Jmin), 1/2}: sufficient for V' <= 0 with the paper's V.",
             "bv.Omega <= (|bv|^2 + |Omega|^2)/2.",
-            PAPER,
+            PAPER + ", condition on lambda",
             _LYAPUNOV,
             by_law=True,
             counts=False,
@@ -133,7 +136,7 @@ CLAIM_KEYS: dict[str, ClaimKey] = {
             "lambda >= 1/(2 sqrt(Jmin)): sufficient and necessary for V' <= 0 on the whole state space with "
             "the paper's V. Never above the paper's condition.",
             "Q maximised over Omega: bv'J^-1 bv/(4 lambda) - 2 lambda (1 - b0).",
-            "this package, docs/theory-lyapunov.md",
+            _LYAPUNOV + ": largest value of Q over the rate, at b0 -> 1",
             _LYAPUNOV,
             by_law=True,
             counts=False,
@@ -144,7 +147,7 @@ CLAIM_KEYS: dict[str, ClaimKey] = {
             "V_a' <= -rho V_a (persistence filter) or V_a' <= -rho W on R >= R_min (adaptive), with "
             "rho = lambda - sqrt(a/Jmin)/2.",
             "A matrix inequality, tight, checked in rationals.",
-            "this package, docs/theory-lyapunov.md",
+            _LYAPUNOV + "; " + PAPER,
             _LYAPUNOV,
             by_law=True,
             counts=False,
@@ -154,7 +157,7 @@ CLAIM_KEYS: dict[str, ClaimKey] = {
             "closed form of V'",
             "V' = R Q + g^2 (1 - k* R) P along the closed loop, exactly.",
             "A polynomial identity modulo |beta|^2 = 1, in rationals.",
-            PAPER + "; closed form: docs/theory-lyapunov.md",
+            _LYAPUNOV + "; " + PAPER,
             _LYAPUNOV,
             by_law=True,
             counts=False,
@@ -165,7 +168,7 @@ CLAIM_KEYS: dict[str, ClaimKey] = {
             "The storage function V never grows, at any state with R >= R_min and any gain g in range.",
             "-Q is a sum of squares on S^3 x R^3: a Gram matrix in rationals, checked by exact LDL^T. "
             "This is about V, not about the laws: where it fails, they may still converge.",
-            PAPER,
+            _LYAPUNOV + "; " + PAPER,
             _LYAPUNOV,
             by_law=True,
             counts=False,
@@ -175,7 +178,7 @@ CLAIM_KEYS: dict[str, ClaimKey] = {
             "R stays above a floor",
             "R(t) >= R_min > 0 for every start in the initial set and all t covered.",
             "Comparison systems integrated with outward rounding; for a periodic g, one period that repeats.",
-            "this package, docs/theory-floor.md",
+            "comparison theorem of Mueller and Walter; " + _FLOOR,
             _FLOOR,
             by_law=True,
             counts=True,
@@ -187,7 +190,7 @@ CLAIM_KEYS: dict[str, ClaimKey] = {
             "envelope; for any lambda > 0.",
             "|Omega|_J decays as exp(-m/2) and the attitude follows in cascade, with m the integral of "
             "g^2 kappa (1 + b0), which the floor of R bounds from below.",
-            "this package, docs/theory-floor.md",
+            _FLOOR,
             _FLOOR,
             by_law=True,
             counts=True,
@@ -198,7 +201,7 @@ CLAIM_KEYS: dict[str, ClaimKey] = {
             "The applied torque g u never exceeds the limit, from any start in the initial set.",
             "Proved by the certified bounds on R, k, the angle and the rate, put into the law; refuted by "
             "one run from the set, enclosed in ball arithmetic.",
-            "this package, docs/theory-floor.md",
+            _FLOOR,
             _FLOOR,
             by_law=True,
             counts=True,
@@ -209,7 +212,7 @@ CLAIM_KEYS: dict[str, ClaimKey] = {
             "R(t) >= R_min > 0 from every start in the initial set, for every body, thruster and disturbance "
             "of [uncertainty]; the controller computes with the inertia of [spacecraft] and its own g.",
             "Comparison systems whose constants hold for every body, integrated with outward rounding.",
-            "this package, docs/theory-robust.md",
+            _ROBUST,
             _ROBUST,
             by_law=True,
             counts=True,
@@ -220,7 +223,7 @@ CLAIM_KEYS: dict[str, ClaimKey] = {
             "The error angle and the rate go to zero from every start, for every body and thruster of "
             "[uncertainty], where no disturbance acts.",
             "The same comparison systems over one period that repeats, scaled down.",
-            "this package, docs/theory-robust.md",
+            _ROBUST,
             _ROBUST,
             by_law=True,
             counts=True,
@@ -231,13 +234,61 @@ CLAIM_KEYS: dict[str, ClaimKey] = {
             "From some time on the error angle and the rate stay within a bound, for every body, thruster "
             "and disturbance of [uncertainty].",
             "The same comparison systems over one period that repeats.",
-            "this package, docs/theory-robust.md",
+            _ROBUST,
             _ROBUST,
             by_law=True,
             counts=True,
         ),
     )
 }
+
+
+def stated(
+    key: str,
+    statement: str,
+    verdict: Verdict,
+    evidence: tuple[Evidence, ...] = (),
+    quantities: tuple[Quantity, ...] = (),
+    margins: tuple[Quantity, ...] = (),
+    *,
+    title: str = "",
+    witness: Witness | None = None,
+    reason: str = "",
+    next_step: str = "",
+    counted: bool | None = None,
+) -> Claim:
+    """Make the claim of a key with its title and its source from the table.
+
+    Parameters
+    ----------
+    statement : str
+        What is claimed, in one sentence, with the numbers put in.
+    verdict : Verdict
+        With what it needs: see `Claim`.
+    evidence, quantities, margins : tuple
+        What supports it, what was found, and how much may change.
+    title : str
+        Another title, where the claim is of another kind this time (a table that ends).
+    witness, reason, next_step : Witness or str
+        What REFUTED and UNDECIDED need.
+    counted : bool or None
+        Whether it decides the exit code; None leaves that to the table.
+    """
+    entry = CLAIM_KEYS[key]
+    return Claim(
+        key=key,
+        title=title or entry.title,
+        statement=statement,
+        verdict=verdict,
+        evidence=evidence,
+        quantities=quantities,
+        margins=margins,
+        witness=witness,
+        reason=reason,
+        next_step=next_step,
+        source=entry.source,
+        counted=entry.counts if counted is None else counted,
+    )
 
 
 def order_of(key: str) -> int:
