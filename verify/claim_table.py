@@ -261,6 +261,8 @@ def stated(
 
     Parameters
     ----------
+    key : str
+        An entry of the table.
     statement : str
         What is claimed, in one sentence, with the numbers put in.
     verdict : Verdict

@@ -93,9 +93,7 @@ def _filter_start(scenario: Scenario, law: Law) -> Iterable[Claim]:
 def _lyapunov(scenario: Scenario, law: Law) -> Iterable[Claim]:
     """About the law's storage function, over the inertia's whole tolerance."""
     mission = scenario.mission
-    return lyapunov_claims(
-        law, mission.body, tolerance=mission.inertia_tolerance, schedule=mission.schedule
-    )
+    return lyapunov_claims(law, mission.body, tolerance=mission.inertia_tolerance, schedule=mission.schedule)
 
 
 def _floor(scenario: Scenario, law: Law) -> Iterable[Claim]:
