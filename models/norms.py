@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, reduce
 from itertools import combinations, product
-from typing import Any, final
+from typing import Any, Literal, final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -262,8 +262,10 @@ EUCLIDEAN = Norm("euclidean", "Euclidean", (Ball(3),))
 """|torque| <= p: a gimballed or well-spread set of thrusters."""
 LARGEST_COMPONENT = Norm("component", "largest component", (Box(3),))
 """|torque_i| <= p for each body axis i: a pair of thrusters for each axis."""
+NormWord = Literal["component", "euclidean"]
+"""Words of the norms that a file or an option may name: the keys of `NORMS`."""
 NORMS = {norm.key: norm for norm in (LARGEST_COMPONENT, EUCLIDEAN)}
-"""The norms that a file may name, by their word."""
+"""The norms, by their word."""
 MEASURED = tuple(NORMS.values())
 """Norms in which the torque of a run is measured unless others are asked for."""
 

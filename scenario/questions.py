@@ -7,10 +7,10 @@ from typing import Any, Literal
 
 from pydantic import StrictBool, field_validator
 
+from ..models.norms import NormWord
 from .exact import Count, Exact, NotNegative, Positive, Seed, Sine, Text
 from .table import Table
 
-Norm = Literal["component", "euclidean"]
 Profile = Literal["window", "gain"]
 Interval = tuple[Exact, Exact]
 
@@ -56,7 +56,7 @@ class OptimumTable(Table):
     """
 
     final_time: Exact | None = None
-    norm: Norm = "component"
+    norm: NormWord = "component"
     profile: Profile = "window"
     attitude_tolerance: Sine = Fraction(0)
     rate_tolerance: NotNegative = Fraction(0)
@@ -78,7 +78,7 @@ class OptimumTable(Table):
 class CompareTable(Table):
     """[compare]: torque norms in which every law is put beside the optimum."""
 
-    norms: tuple[Norm, ...] = ("component", "euclidean")
+    norms: tuple[NormWord, ...] = ("component", "euclidean")
     profile: Profile = "window"
 
 
@@ -91,7 +91,7 @@ class TuneTable(Table):
 
     law: Text | None = None
     settle: Positive | None = None
-    norm: Norm = "component"
+    norm: NormWord = "component"
     bounds: dict[str, Interval] | None = None
     evaluations: Count = 2000
     seed: Seed = 1
@@ -135,5 +135,5 @@ class ReportTable(Table):
     audit: StrictBool = False
     front: tuple[Positive, ...] = ()
     front_laws: tuple[Text, ...] = ()
-    front_norm: Norm = "euclidean"
+    front_norm: NormWord = "euclidean"
     front_evaluations: Count = 300

@@ -11,11 +11,11 @@ from typing import Any, Literal
 
 from pydantic import ConfigDict, Field, StrictBool, field_validator
 
+from ..models.norms import NormWord
 from .exact import Count, Exact, Matrix, NotNegative, Positive, PositiveSine, Text, Vector, exact
 from .questions import CheckTable, CompareTable, OptimumTable, ReportTable, StudyTable, TuneTable
 from .table import Table
 
-Norm = Literal["component", "euclidean"]
 ShapeName = Literal["hermite", "hermite-as-printed", "ramps"]
 
 
@@ -188,7 +188,7 @@ class LimitsTable(Table):
     """[limits]: `torque`, N m, that the applied torque must not exceed in the given `norm`."""
 
     torque: Positive
-    norm: Norm = "component"
+    norm: NormWord = "component"
 
 
 class ScenarioFile(Table):
