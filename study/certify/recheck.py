@@ -8,8 +8,12 @@ from pathlib import Path
 from typing import final
 
 from ...errors import InputError
+from ...reports.content.wording import short
 from ...reports.summary import Shown, Summary
 from ...verify.checker import Finding, Part, check_text, read_part
+
+MAX_CLAIM = 80
+"""Characters of a claim in the table; `finding.claim` has all its words."""
 
 
 @final
@@ -40,7 +44,7 @@ class Rechecked(Shown):
         """Each finding: VALID, or INVALID with the reason."""
         invalid = sum(not finding.valid for finding in self.findings)
         line = f"{len(self) - invalid} valid, {invalid} not valid"
-        rows = [(_word(f), f.kind, "; ".join(f.claim) or f.reason) for f in self.findings]
+        rows = [(_word(f), f.kind, short(" ".join(f.claim), MAX_CLAIM)) for f in self.findings]
         why = [f"{f.kind}: {f.reason}" for f in self.findings if not f.valid]
         return Summary("Certificate file", (line, *why), ((("", "kind", "claim"), rows),))
 

@@ -130,11 +130,19 @@ def _summary(study: CheckStudy) -> Summary:
     schedule = [(claim.title, _verdict(claim)) for claim in study.claims]
     keys = sorted({key for claims in about for key in claims}, key=order_of)
     rows = [(titles[key], *(_verdict(claims.get(key)) for claims in about)) for key in keys]
-    open_claims = (claim for claim in study.all_claims if claim.verdict is Verdict.UNDECIDED)
-    why = dict.fromkeys(f"{c.key}: {c.reason}; next: {c.next_step}" for c in open_claims)
+    why = dict.fromkeys(_why(claim) for claim in study.all_claims if claim.verdict is not Verdict.PROVED)
+    if any(not claim.counted for claim in study.all_claims):
+        why["* reported; does not decide the exit code"] = None
     title = f"{study.scenario.name} ({study.scenario.path.name})"
     tables = ((("The schedule", "verdict"), schedule), (("The laws", *laws), rows))
     return Summary(title, (study.sentence, *why), tables)
+
+
+def _why(claim: Claim) -> str:
+    """Why a claim is not proved, in one line."""
+    if claim.witness is not None:
+        return f"{claim.key}: {claim.verdict.value}: {claim.witness.description}"
+    return f"{claim.key}: {claim.reason}; next: {claim.next_step}"
 
 
 def _verdict(claim: Claim | None) -> str:
