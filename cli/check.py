@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from time import perf_counter
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ..errors import InputError
 from ..study.options import CheckOptions, help_of
 from .options import WORKERS, Debug, JsonFile, ScenarioFiles
+
+if TYPE_CHECKING:
+    from ..study.check.result import CheckStudy
 
 
 def run(
@@ -37,18 +40,22 @@ def run(
     from ..study.check.run import run_check
     from ..study.claims.counting import exit_code
     from .check_page import print_check
-    from .console import note, output, progress
+    from .console import note, output, printing_what_is_found, progress
     from .opening import open_scenario
+    from .size import check_size, state_size
 
     began = perf_counter()
     if json is not None and len(scenarios) > 1:
         raise InputError("--json writes one record: give one scenario")
     loaded = [open_scenario(path, says_clock=True) for path in scenarios]
     options = CheckOptions(simulate=simulate, margins=margins, search=search, workers=workers)
-    studies = []
     for scenario in loaded:
-        with progress(scenario.name) as step:
-            studies.append(run_check(scenario, options, step))
+        state_size(check_size(scenario))
+    studies: list[CheckStudy] = []
+    with printing_what_is_found(lambda study: print_check(output(), [*studies, study])):
+        for scenario in loaded:
+            with progress(scenario.name) as step:
+                studies.append(run_check(scenario, options, step))
     print_check(output(), studies)
     if json is not None:
         from ..reports.record import write_record_to

@@ -26,11 +26,16 @@ def run(
     del debug
     from ..scenario import law_from_words, with_laws
     from ..study.compare.run import comparison_record, run_comparison
-    from .console import progress
+    from .console import printing_what_is_found, progress
     from .finish import finish
     from .opening import open_scenario
+    from .size import compare_size, state_size
 
     loaded = with_laws(open_scenario(scenario), *(law_from_words(words) for words in law or ()))
-    with progress(loaded.name):
-        found = run_comparison(loaded, CompareOptions(at_horizon=at_horizon))
+    state_size(compare_size(loaded))
+    with (
+        printing_what_is_found(lambda partial: finish(comparison_record(partial), None)),
+        progress(loaded.name) as step,
+    ):
+        found = run_comparison(loaded, CompareOptions(at_horizon=at_horizon), step)
     return finish(comparison_record(found), json, failed=not found.is_complete)

@@ -43,10 +43,11 @@ def run(
 ) -> int:
     """Find the least peak torque any controller could do with through the windows."""
     del debug
-    from ..study.optimum.run import run_optimum
-    from .console import note, output, progress
+    from ..study.optimum.run import norms_asked, run_optimum
+    from .console import note, output, printing_what_is_found, progress
     from .opening import open_scenario
     from .optimum_page import print_optimum
+    from .size import optimum_size, state_size
 
     began = perf_counter()
     loaded = open_scenario(scenario, says_clock=True)
@@ -63,7 +64,11 @@ def run(
         least_time=least_time,
         least_impulse=least_impulse,
     )
-    with progress(loaded.name) as step:
+    state_size(optimum_size(loaded, len(norms_asked(loaded, options)), starts))
+    with (
+        printing_what_is_found(lambda found: print_optimum(output(), found)),
+        progress(loaded.name) as step,
+    ):
         study = run_optimum(loaded, options, step)
     print_optimum(output(), study)
     if certificate is not None:

@@ -23,11 +23,17 @@ def run(
     del debug
     from ..study.pool import executor_of
     from ..study.sweep.run import run_schedule_study, schedule_record
-    from .console import progress
+    from .console import printing_what_is_found, progress
     from .finish import finish
     from .opening import open_scenario
+    from .size import state_size, sweep_size
 
     loaded = open_scenario(scenario)
-    with progress(loaded.name), executor_of(workers) as executor:
-        study = run_schedule_study(loaded, law=law, norm=norm_of(peak_norm), executor=executor)
+    state_size(sweep_size(loaded))
+    with (
+        printing_what_is_found(lambda found: finish(schedule_record(found), None)),
+        progress(loaded.name) as step,
+        executor_of(workers) as executor,
+    ):
+        study = run_schedule_study(loaded, law=law, norm=norm_of(peak_norm), executor=executor, progress=step)
     return finish(schedule_record(study), json)

@@ -13,6 +13,7 @@ from ..models.mission import Mission
 from ..models.norms import Norm
 from ..models.schedule import Hermite, Shape, Window, build_schedule
 from ..models.simulation import SimulationError
+from ..models.types import Interrupted, Progress, silent
 from .comparison.measure import run_law
 from .tuning.front import BestPossible, best_possible
 
@@ -84,6 +85,7 @@ def study_schedules(
     floor: FloorOf,
     family: ScheduleFamily | None = None,
     executor: Executor | None = None,
+    progress: Progress | None = None,
 ) -> tuple[ScheduleCase, ...]:
     """Every period with every duty cycle, in that order; cases go to the executor's workers.
 
@@ -107,6 +109,13 @@ def study_schedules(
         How a period and a duty cycle make a schedule; its defaults without one.
     executor : Executor, optional
         Workers that share the cases; None does them here.
+    progress : Progress, optional
+        Is told how many are done.
+
+    Raises
+    ------
+    Interrupted
+        With the cases so far, where the user interrupts.
     """
     family = family if family is not None else ScheduleFamily()
     jobs = [
@@ -114,9 +123,18 @@ def study_schedules(
         for period in periods
         for duty in duty_cycles
     ]
-    if executor is None:
-        return tuple(study_case(*job) for job in jobs)
-    return tuple(f.result() for f in [executor.submit(study_case, *job) for job in jobs])
+    tell = progress if progress is not None else silent
+    done: list[ScheduleCase] = []
+    futures = None if executor is None else [executor.submit(study_case, *job) for job in jobs]
+    try:
+        for i, job in enumerate(jobs):
+            tell(f"schedule {i + 1} of {len(jobs)}", i / len(jobs))
+            done.append(study_case(*job) if futures is None else futures[i].result())
+    except KeyboardInterrupt:
+        ready = [f for f in (futures or [])[len(done) :] if f.done() and not f.cancelled()]
+        done += [f.result() for f in ready if f.exception() is None]
+        raise Interrupted(tuple(done), f"not finished: {len(jobs) - len(done)} schedules") from None
+    return tuple(done)
 
 
 def study_case(

@@ -9,7 +9,7 @@ from typing import final
 
 import numpy as np
 
-from ...models.types import Array
+from ...models.types import Array, Interrupted, Progress, silent
 from .space import SearchSpace
 
 Evaluate = Callable[[list[dict[str, Fraction]]], "Outcomes"]
@@ -97,12 +97,27 @@ class DifferentialEvolution:
                 f"{self.evaluations}, {self.population}, {self.polish}"
             )
 
-    def run(self, space: SearchSpace, evaluate: Evaluate, *, start: Array | None = None) -> SearchHistory:
-        """Search the space; `start` (n,) in the unit cube joins the first generation."""
+    def run(
+        self,
+        space: SearchSpace,
+        evaluate: Evaluate,
+        *,
+        start: Array | None = None,
+        progress: Progress | None = None,
+    ) -> SearchHistory:
+        """Search the space; `start` (n,) in the unit cube joins the first generation.
+
+        Raises
+        ------
+        Interrupted
+            With the history so far, where the user interrupts.
+        """
         trials: list[Trial] = []
         dimension = len(space.ranges)
+        tell, work = progress if progress is not None else silent, self.evaluations + self.polish
 
         def score(points: Array) -> Array:
+            tell(f"{len(trials)} of {work} candidates", min(len(trials) / work, 1.0))
             candidates = [space.decode(p) for p in points.reshape(dimension, -1).T]
             outcomes = evaluate(candidates)
             trials.extend(
@@ -112,10 +127,14 @@ class DifferentialEvolution:
             return np.where(outcomes.excess <= 0, outcomes.peak, _UNSETTLED * (1 + _finite(outcomes.excess)))
 
         whole = np.tile([0.0, 1.0], (dimension, 1))
-        best = self._evolve(score, whole, self.evaluations, start)
-        if self.polish >= self.population:
-            near = np.clip(np.stack([best - self.reach, best + self.reach], axis=1), 0, 1)
-            self._evolve(score, near, self.polish, best)
+        try:
+            best = self._evolve(score, whole, self.evaluations, start)
+            if self.polish >= self.population:
+                near = np.clip(np.stack([best - self.reach, best + self.reach], axis=1), 0, 1)
+                self._evolve(score, near, self.polish, best)
+        except KeyboardInterrupt:
+            left = f"{len(trials)} of {work} candidates were simulated"
+            raise Interrupted(SearchHistory(tuple(trials), self.seed), left) from None
         return SearchHistory(tuple(trials), self.seed)
 
     def _evolve(

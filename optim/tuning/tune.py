@@ -13,6 +13,7 @@ from ...models.laws import Law
 from ...models.mission import Mission
 from ...models.norms import Norm
 from ...models.simulation import SimulationError
+from ...models.types import Progress
 from ..comparison.measure import LawRun, run_law
 from .choose import least_passing
 from .evaluate import EnsembleRuns
@@ -63,6 +64,7 @@ def tune(
     method: DifferentialEvolution | None = None,
     certify: Certify | None = None,
     start_from_law: bool = True,
+    progress: Progress | None = None,
 ) -> Tuned:
     """Search a law's parameters for the least peak torque that settles by `settle`.
 
@@ -86,6 +88,8 @@ def tune(
         Conditions the answer must meet.
     start_from_law : bool
         Whether the law's own parameters are the first candidate.
+    progress : Progress, optional
+        Is told how many candidates are simulated.
 
     Returns
     -------
@@ -97,7 +101,8 @@ def tune(
     space = SearchSpace.around(law, ranges)
     method = method if method is not None else DifferentialEvolution()
     evaluate = EnsembleRuns(law, mission, settle=settle, norm=norm)
-    history = method.run(space, evaluate, start=space.encode(law.parameters) if start_from_law else None)
+    start = space.encode(law.parameters) if start_from_law else None
+    history = method.run(space, evaluate, start=start, progress=progress)
     candidates = _distinct(history.settled_by_peak)
     reasons: dict[int, str] = {}
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from ...models.types import Progress, silent
+from collections.abc import Iterable
+
+from ...models.types import Interrupted, Progress, silent
 from ...scenario import Scenario
 from ..claims.counting import count, counted_keys
 from ..options import CheckOptions
-from ..simulated_run import run_law, seen_in
-from .case import Case, CaseOptions
+from ..simulated_run import Run, run_law, seen_in
+from .case import Case, CaseOptions, Findings
 from .makers import scenario_claims
 from .result import CheckStudy
 from .workers import crew
@@ -22,6 +24,8 @@ def run_check(
     ------
     ScenarioError
         If the scenario asks for a claim that does not exist, or a law cannot be built.
+    Interrupted
+        With the study so far, where the user interrupts.
     """
     options = options if options is not None else CheckOptions()
     tell = progress if progress is not None else silent
@@ -29,18 +33,25 @@ def run_check(
     tell("schedule", 0.0)
     schedule = count(scenario_claims(scenario), scenario)
     wanted = CaseOptions(margins=options.margins, search=options.search)
-    runs = []
+    runs: list[Run | None] = []
+
+    def study(found: Iterable[tuple[int, Findings]]) -> CheckStudy:
+        cases = (Case(scenario.laws[i], f, count(f.claims, scenario), runs[i]) for i, f in found)
+        return CheckStudy(scenario, schedule, tuple(cases))
+
     with crew(len(scenario.laws), options.workers, tell) as workers:
-        for choice in scenario.laws:
-            tell(f"{choice.label}: simulation", 0.05)
-            run = run_law(scenario, choice.build()) if options.simulate else None
-            runs.append(run)
-            workers.add(scenario, choice, seen_in(scenario, run), wanted)
-        findings = workers.findings()
-    cases = (
-        Case(choice, found, count(found.claims, scenario), run)
-        for choice, found, run in zip(scenario.laws, findings, runs, strict=True)
-    )
-    study = CheckStudy(scenario, schedule, tuple(cases))
+        try:
+            for choice in scenario.laws:
+                tell(f"{choice.label}: simulation", 0.05)
+                run = run_law(scenario, choice.build()) if options.simulate else None
+                runs.append(run)
+                workers.add(scenario, choice, seen_in(scenario, run), wanted)
+            findings = workers.findings()
+        except KeyboardInterrupt:
+            partial = study(workers.done())
+            done = {case.choice.label for case in partial.cases}
+            missing = ", ".join(c.label for c in scenario.laws if c.label not in done)
+            raise Interrupted(partial, f"not finished: {missing}") from None
+    complete = study(enumerate(findings))
     tell("done", 1.0)
-    return study
+    return complete

@@ -96,6 +96,10 @@ class WorkerPool:
                 raise failure
         return [job.findings() for job in self._jobs]
 
+    def done(self) -> list[tuple[int, Findings]]:
+        """Numbers and findings of the laws of which all is found already."""
+        return [(i, job.findings()) for i, job in enumerate(self._jobs) if job.is_done]
+
     def _put(self, part: str, number: int, *arguments: Any) -> None:
         heappush(self._ready, (list(PARTS).index(part), number, arguments))
 

@@ -13,7 +13,7 @@ from ...errors import InputError
 from ...models.apart import apart
 from ...models.norms import EUCLIDEAN, LARGEST_COMPONENT, NORMS
 from ...models.simulation import SimulationError
-from ...models.types import Array
+from ...models.types import Array, Interrupted, Progress, silent
 from ...optim.comparison.equal_terms import EqualTerms, on_equal_terms
 from ...optim.comparison.measure import Goal, LawRun, run_law
 from ...optim.problem import WindowProfile
@@ -150,16 +150,31 @@ def _chart(row: Row, norm: str) -> Chart:
     return Chart(norm, row.label, TIME, Axis(f"|g u|, {norm}", "N m"), tuple(lines), "", shaded)
 
 
-def run_comparison(scenario: Scenario, options: CompareOptions | None = None) -> Comparison:
+def run_comparison(
+    scenario: Scenario, options: CompareOptions | None = None, progress: Progress | None = None
+) -> Comparison:
     """Simulate each law, then find the optimum and the certified bound for the same work.
 
     Raises
     ------
     OrderError
         If certified bound <= optimum <= law is broken anywhere.
+    Interrupted
+        With the laws compared so far, where the user interrupts after the first.
     """
     options = options if options is not None else CompareOptions()
-    return Comparison(scenario, tuple(_row(scenario, choice, options) for choice in scenario.laws))
+    tell = progress if progress is not None else silent
+    rows: list[Row] = []
+    for i, choice in enumerate(scenario.laws):
+        tell(f"{choice.label}: optimum and bound for its time", i / len(scenario.laws))
+        try:
+            rows.append(_row(scenario, choice, options))
+        except KeyboardInterrupt:
+            if not rows:
+                raise
+            missing = ", ".join(c.label for c in scenario.laws[i:])
+            raise Interrupted(Comparison(scenario, tuple(rows)), f"not finished: {missing}") from None
+    return Comparison(scenario, tuple(rows))
 
 
 def _row(scenario: Scenario, choice: Any, options: CompareOptions) -> Row:

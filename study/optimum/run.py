@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from typing import TYPE_CHECKING
 
 from ...models.norms import NORMS, Norm, thrusters
-from ...models.types import Progress, silent
+from ...models.types import Interrupted, Progress, silent
 from ...optim.problem import Terminal, TransferProblem, WindowProfile
 from ...scenario import Scenario
 from ..options import OptimumOptions, SolverKey
@@ -31,40 +32,67 @@ class BoundInversionError(RuntimeError):
 def run_optimum(
     scenario: Scenario, options: OptimumOptions | None = None, progress: Progress | None = None
 ) -> OptimumStudy:
-    """Find the least peak of the scenario's transfer in each norm."""
+    """Find the least peak of the scenario's transfer in each norm.
+
+    Raises
+    ------
+    Interrupted
+        With the study so far, where the user interrupts after the first norm.
+    """
+    options = options if options is not None else OptimumOptions()
+    tell = progress if progress is not None else silent
+    norms = norms_asked(scenario, options)
+    optima: list[Optimum] = []
+    _needs_a_limit(scenario, options, norms)
+    for i, norm in enumerate(norms):
+        done = partial(_share, tell, i, len(norms))
+        try:
+            optima.append(_solved(scenario, norm, options, done))
+        except KeyboardInterrupt:
+            if not optima:
+                raise
+            missing = ", ".join(n.name for n in norms[i:])
+            raise Interrupted(
+                OptimumStudy(scenario, options, tuple(optima)), f"not finished: {missing}"
+            ) from None
+    tell("done", 1.0)
+    return OptimumStudy(scenario, options, tuple(optima))
+
+
+def _share(tell: Progress, number: int, count: int, stage: str, share: float) -> None:
+    """Tell the progress of one of several like parts."""
+    tell(stage, (number + share) / count)
+
+
+def _solved(scenario: Scenario, norm: Norm, options: OptimumOptions, tell: Progress) -> Optimum:
+    """The least peak in one norm, and what is asked beside it."""
     from ...optim.peak import MultiStart, Refinement, minimum_impulse, minimum_peak, minimum_time
     from ...optim.peak.search.explain import explain
 
-    options = options if options is not None else OptimumOptions()
-    tell = progress if progress is not None else silent
     table = scenario.optimum
     search = MultiStart(
         starts=table.starts if options.starts is None else options.starts,
         seed=table.seed if options.seed is None else options.seed,
     )
     refinement, quick = Refinement(mesh_gap=options.mesh_gap), Refinement(mesh_gap=1e-5)
-    norms, optima = norms_asked(scenario, options), []
-    _needs_a_limit(scenario, options, norms)
-    for i, norm in enumerate(norms):
-        tell(f"optimum, {norm.key}", i / len(norms))
-        stated = transfer(scenario, norm)
-        problem, _ = after_coast(scenario, stated)
-        limit = limit_of(scenario, norm)
-        hopeless = explain(stated, limit)
-        answer = minimum_peak(problem, solver=_solver(options.solver), search=search, refinement=refinement)
-        bound = _bound(stated, answer, options)
-        least = None
-        if options.least_time and limit is not None and hopeless is None:
-            tell(f"least time, {norm.key}", (i + 0.5) / len(norms))
-            least = minimum_time(problem, limit, search=replace(search, starts=1), refinement=quick)
-        spent = None
-        if options.least_impulse and limit is not None and hopeless is None:
-            tell(f"least impulse, {norm.key}", (i + 0.8) / len(norms))
-            few = replace(search, starts=min(2, search.starts))
-            spent = minimum_impulse(problem, limit, search=few)
-        optima.append(Optimum(problem, answer, limit, hopeless, bound, least, spent, stated))
-    tell("done", 1.0)
-    return OptimumStudy(scenario, options, tuple(optima))
+    tell(f"optimum, {norm.key}", 0.0)
+    stated = transfer(scenario, norm)
+    problem, _ = after_coast(scenario, stated)
+    limit = limit_of(scenario, norm)
+    hopeless = explain(stated, limit)
+    answer = minimum_peak(problem, solver=_solver(options.solver), search=search, refinement=refinement)
+    tell(f"certified bound, {norm.key}", 0.4)
+    bound = _bound(stated, answer, options)
+    least = None
+    if options.least_time and limit is not None and hopeless is None:
+        tell(f"least time, {norm.key}", 0.5)
+        least = minimum_time(problem, limit, search=replace(search, starts=1), refinement=quick)
+    spent = None
+    if options.least_impulse and limit is not None and hopeless is None:
+        tell(f"least impulse, {norm.key}", 0.8)
+        few = replace(search, starts=min(2, search.starts))
+        spent = minimum_impulse(problem, limit, search=few)
+    return Optimum(problem, answer, limit, hopeless, bound, least, spent, stated)
 
 
 def _needs_a_limit(scenario: Scenario, options: OptimumOptions, norms: Sequence[Norm]) -> None:

@@ -10,6 +10,7 @@ from typing import final
 
 from ...models.mission import Mission
 from ...models.norms import NORMS, Norm
+from ...models.types import Interrupted, Progress
 from ...optim.schedule_study import LeastOnTime, ScheduleCase, ScheduleFamily, least_on_time, study_schedules
 from ...optim.tuning.conditions import certified_floor
 from ...reports import parts
@@ -44,6 +45,7 @@ def run_schedule_study(
     law: str | None = None,
     norm: Norm | None = None,
     executor: Executor | None = None,
+    progress: Progress | None = None,
 ) -> ScheduleStudy:
     """Study the schedules of [study] for one law of the scenario, in the norm of [optimum] or the given.
 
@@ -51,6 +53,8 @@ def run_schedule_study(
     ------
     ScenarioError
         If the scenario has no law, or neither it nor its schedule names a period.
+    Interrupted
+        With the study so far, where the user interrupts after its first schedule.
     """
     if not scenario.laws:
         raise ScenarioError(scenario.path.name, "has no [[law]] to study")
@@ -65,19 +69,32 @@ def run_schedule_study(
     time = scenario.optimum.final_time or scenario.horizon
     built, mission, norm = choice.build(), scenario.mission, norm or NORMS[scenario.optimum.norm]
     _require_windows_that_fit(scenario, mission, periods, duty, time)
-    cases = study_schedules(
-        built, mission, periods, duty, time=time, norm=norm, floor=certified_floor, executor=executor
-    )
-    least: tuple[LeastOnTime, ...] = ()
-    if scenario.study.torque_limit is not None:
-        least = tuple(
-            least_on_time(
-                built, mission, period, torque_limit=scenario.study.torque_limit, time=time, norm=norm,
-                floor=certified_floor,
-            )
-            for period in periods
+    cases: tuple[ScheduleCase, ...] = ()
+    least: list[LeastOnTime] = []
+
+    def study() -> ScheduleStudy:
+        return ScheduleStudy(scenario, choice, norm, time, cases, tuple(least))
+
+    try:
+        cases = study_schedules(
+            built, mission, periods, duty, time=time, norm=norm, floor=certified_floor, executor=executor,
+            progress=progress,
         )  # fmt: skip
-    return ScheduleStudy(scenario, choice, norm, time, cases, least)
+        limit = scenario.study.torque_limit
+        for period in periods if limit is not None else ():
+            assert limit is not None
+            found = least_on_time(
+                built, mission, period, torque_limit=limit, time=time, norm=norm, floor=certified_floor
+            )
+            least.append(found)
+    except Interrupted as stopped:
+        cases = stopped.found
+        if not cases:
+            raise KeyboardInterrupt from None
+        raise Interrupted(study(), stopped.left_out) from None
+    except KeyboardInterrupt:
+        raise Interrupted(study(), "not finished: the least on-times") from None
+    return study()
 
 
 def _require_windows_that_fit(

@@ -11,6 +11,7 @@ import numpy as np
 from ...models.apart import apart
 from ...models.laws import Law
 from ...models.norms import EUCLIDEAN, LARGEST_COMPONENT, NORMS, Norm
+from ...models.types import Progress
 from ...optim.tuning.conditions import CertifiedConvergence
 from ...optim.tuning.front import Front, pareto_front
 from ...optim.tuning.search import DifferentialEvolution
@@ -33,6 +34,7 @@ def run_tuning(
     norm: Norm | None = None,
     law: str | None = None,
     seed: int | None = None,
+    progress: Progress | None = None,
 ) -> Tuned:
     """Search one law's parameters; what is not given comes from the scenario's [tune].
 
@@ -59,6 +61,7 @@ def run_tuning(
         ranges=scenario.tune.bounds,
         method=_method(scenario, seed),
         certify=conditions_on(scenario, scenario.law(label)),
+        progress=progress,
     )
 
 
