@@ -28,15 +28,14 @@ from ..verdict import Witness
 from .candidates import Candidate
 from .exact_states import EXACT, ExactState, loop_arguments, program_of
 from .refutation import Refutation, at_state
+from .search_units import SearchUnits, inverse_root
 
 MIN_ANGLE = 1e-3
 """Least half error angle searched, rad: V'/W tends to its limit at the equilibrium like its square."""
 ROUNDING = 1e-12
 """Values of V'/W (1/s) below this are rounding."""
 MAX_RATIO = 20.0
-"""Largest component of J^(1/2) Omega over half the error angle, sqrt(kg m^2)/s."""
-FLOOR_TARGET = Fraction(1)
-"""k* = 1/R_min of the search, 1/s; R is searched above R_min."""
+"""Largest component of J^(1/2) Omega over half the error angle, in the unit of `SearchUnits.ratio`."""
 
 
 @final
@@ -49,7 +48,7 @@ class Falsifier:
     points : random states tried on each piece
     starts : how many of them start a search
     seed : of the random states
-    largest : upper end of the controller states searched (their units)
+    largest : upper end of the controller states searched, in units of the start (see `SearchUnits`)
     """
 
     points: int = 400
@@ -111,7 +110,7 @@ def falsify(
     body : RigidBody
         The body.
     schedule : Schedule or None
-        Phases to search, one piece after another; without it a smooth unit pulse of one second.
+        Phases to search, one piece after another; without it a smooth unit pulse of a unit of time.
     weight : Fraction
         The weight a where the storage function leaves it free.
     options : Falsifier, optional
@@ -119,7 +118,7 @@ def falsify(
     """
     options = options or Falsifier()
     search = _Search(candidate, body, weight, options)
-    for coefficients, length in _pieces(schedule):
+    for coefficients, length in _pieces(schedule, 1 / search.units.target):
         search.on_piece(coefficients, length)
     search.found.sort(key=lambda item: -item[0])
     reason, spurious = "", 0
@@ -134,10 +133,10 @@ def falsify(
     return Falsification(values[0] if values else search.found[0][0], None, search.evaluations, reason)
 
 
-def _pieces(schedule: Schedule | None) -> list[tuple[tuple[Fraction, ...], Fraction]]:
+def _pieces(schedule: Schedule | None, time: Fraction) -> list[tuple[tuple[Fraction, ...], Fraction]]:
     """Distinct pieces of g: coefficients in the time since its start, and duration."""
     if schedule is None:
-        return [((Fraction(0), Fraction(0), Fraction(3), Fraction(-2)), Fraction(1)), ((), Fraction(1))]
+        return [((Fraction(0), Fraction(0), 3 / time**2, -2 / time**3), time), ((), time)]
     profile = schedule.profile
     return list({(piece.local_coefficients(), piece.length) for piece in profile.pieces})
 
@@ -151,7 +150,8 @@ class _Search:
         self._signals = candidate.loop.time.shape[0] - 2
         self._random = np.random.default_rng(options.seed)
         self._root = inverse_root(body)
-        self._objective, self._gradient = _objective(candidate, body, weight)
+        self.units = SearchUnits.of(candidate, body, weight)
+        self._objective, self._gradient = _objective(candidate, body, weight, self.units)
         self.evaluations = 0
         self.found: list[tuple[float, Array, tuple[Fraction, ...]]] = []
 
@@ -161,9 +161,10 @@ class _Search:
 
         if len(coefficients) > DEGREE + 1:  # searched by its first terms; a violation is evaluated exactly
             coefficients = coefficients[: DEGREE + 1]
-        padded = np.zeros(DEGREE + 1)
-        padded[: len(coefficients)] = [float(c) for c in coefficients]
-        low, high = self._bounds(float(length))
+        padded = np.zeros(DEGREE + 2)
+        padded[: len(coefficients)] = [float(c * length**i) for i, c in enumerate(coefficients)]
+        padded[-1] = float(length)
+        low, high = self._bounds()
         points = low + (high - low) * self._random.random((self._options.points, len(low)))
         values = np.array([float(self._objective(p, padded)) for p in points])
         self.evaluations += len(points)
@@ -182,21 +183,28 @@ class _Search:
                 bounds=list(zip(low, high, strict=True)),
             )
             self.evaluations += int(result.nfev)
-            self.found.append((-float(result.fun) * size, np.asarray(result.x), coefficients))
+            x = np.asarray(result.x)
+            self.found.append((-float(result.fun) * size, self._restored(x, float(length)), coefficients))
 
-    def _bounds(self, length: float) -> tuple[Array, Array]:
-        """Box of (log theta, axis (3), J^(1/2) Omega/theta (3), controller states, signals, time)."""
+    def _bounds(self) -> tuple[Array, Array]:
+        """Box of (log theta, axis (3), J^(1/2) Omega/theta (3), states, signals, time), in units."""
         largest = self._options.largest
         low = [math.log(MIN_ANGLE), -1, -1, -1, *[-MAX_RATIO] * 3]
         high = [math.log(math.pi), 1, 1, 1, *[MAX_RATIO] * 3]
         above_floor = self._candidate.floor is not None
         for name in self._states:
-            least = (float(1 / FLOOR_TARGET) if above_floor else 0.05) if name == "R" else 0.0
-            low.append(least)
+            floor = float(1 / self.units.target / self.units.states[name]) if above_floor else 0.05
+            low.append(floor if name == "R" else 0.0)
             high.append(largest)
         low += [-1.0] * self._signals + [0.0]
-        high += [1.0] * self._signals + [length]
+        high += [1.0] * self._signals + [1.0]
         return np.array(low), np.array(high)
+
+    def _restored(self, z: Array, length: float) -> Array:
+        """Coordinates in the units of the law."""
+        states = [float(self.units.states[name]) for name in self._states]
+        sizes = np.array([1.0] * 4 + [self.units.ratio] * 3 + states + [1.0] * self._signals + [length])
+        return np.asarray(z * sizes)
 
     def exact_refutation(self, z: Array, coefficients: Sequence[Fraction]) -> tuple[Refutation | None, str]:
         """Move a violation to rationals and evaluate V' there."""
@@ -215,20 +223,17 @@ class _Search:
         quaternion = rational_quaternion([math.cos(theta), *(math.sin(theta) * axis)])
         omega = [near(float(x), 10**9) for x in theta * (self._root @ z[4:7])]
         end = 7 + len(self._states)
-        controller = {
-            name: Fraction(float(x)).limit_denominator(10**6)
-            for name, x in zip(self._states, z[7:end], strict=True)
-        }
+        controller = {name: near(float(x), 10**6) for name, x in zip(self._states, z[7:end], strict=True)}
         if self._candidate.floor is not None and "R" in controller:
-            controller["R"] = max(controller["R"], 1 / FLOOR_TARGET)
-        tau = Fraction(float(z[-1])).limit_denominator(10**6)
+            controller["R"] = max(controller["R"], 1 / self.units.target)
+        tau = near(float(z[-1]), 10**6)
         gain = sum((c * tau**i for i, c in enumerate(coefficients)), Fraction(0))
         gain_rate = sum((i * c * tau ** (i - 1) for i, c in enumerate(coefficients) if i), Fraction(0))
         signals = tuple(Fraction(float(x)).limit_denominator(10**6) for x in z[end:-1])
-        state = ExactState(quaternion, tuple(omega), controller, gain, gain_rate, FLOOR_TARGET, signals)
+        state = ExactState(quaternion, tuple(omega), controller, gain, gain_rate, self.units.target, signals)
         shift = self._exact_shift(state)
         rate = tuple(x - y for x, y in zip(omega, shift, strict=True))
-        return ExactState(quaternion, rate, controller, gain, gain_rate, FLOOR_TARGET, signals)
+        return ExactState(quaternion, rate, controller, gain, gain_rate, self.units.target, signals)
 
     def _exact_shift(self, state: ExactState) -> list[Fraction]:
         loop = self._candidate.loop
@@ -237,23 +242,18 @@ class _Search:
         return evaluate(program, EXACT, loop_arguments(loop, state, body), Fraction)[0]
 
 
-def inverse_root(body: RigidBody) -> Array:
-    """J^(-1/2) in floats, (3, 3)."""
-    values, vectors = np.linalg.eigh(np.asarray(body.inertia))
-    root: Array = (vectors / np.sqrt(values)) @ vectors.T
-    return root
-
-
 DEGREE = 7
 """Largest degree of a piece of g that the search takes."""
 
 
-def _objective(candidate: Candidate, body: RigidBody, weight: Fraction) -> tuple[Any, Any]:
-    """-V'/W and its gradient as CasADi functions of (coordinates, coefficients of g)."""
+def _objective(
+    candidate: Candidate, body: RigidBody, weight: Fraction, units: SearchUnits
+) -> tuple[Any, Any]:
+    """-V'/W and its gradient: CasADi functions of the coordinates, and of g's coefficients and duration."""
     loop = candidate.loop
     signals = loop.time.shape[0] - 2
     n = len(loop.controller_states)
-    z, coefficients = ca.SX.sym("z", 7 + n + signals + 1), ca.SX.sym("coefficients", DEGREE + 1)
+    z, coefficients = ca.SX.sym("z", 7 + n + signals + 1), ca.SX.sym("coefficients", DEGREE + 2)
     theta, axis = ca.exp(z[0]), z[1:4] / ca.sqrt(ca.sumsqr(z[1:4]) + 1e-12)
     tau = z[-1]
     g = sum((coefficients[i] * tau**i for i in range(DEGREE + 1)), ca.SX(0))
@@ -261,17 +261,22 @@ def _objective(candidate: Candidate, body: RigidBody, weight: Fraction) -> tuple
     rate = loop.total_derivative(candidate.value) if candidate.derivative is None else candidate.derivative
     reference = ca.SX(candidate.reference)
     symbols = [loop.plant.b0, loop.plant.bv, *loop.controller_states.values(), loop.time]
-    time = ca.vertcat(g, ca.jacobian(g, tau), z[7 + n : 7 + n + signals])
-    values = [replaced["b0"], replaced["bv"], *(z[7 + i] for i in range(n)), time]
-    for symbol, number in ((candidate.floor, FLOOR_TARGET), (candidate.weight, weight)):
+    time = ca.vertcat(g, ca.jacobian(g, tau) / coefficients[-1], z[7 + n : 7 + n + signals])
+    values = [
+        replaced["b0"],
+        replaced["bv"],
+        *(z[7 + i] * float(u) for i, u in enumerate(units.states.values())),
+        time,
+    ]
+    for symbol, number in ((candidate.floor, units.target), (candidate.weight, weight)):
         if symbol is not None:
             symbols, values = [*symbols, symbol], [*values, ca.SX(float(number))]
     symbols = [*symbols, loop.parameters, loop.body]
     values = [*values, ca.SX(loop.parameter_values()), ca.SX(body_values(body))]
-    w = theta * ca.mtimes(ca.DM(inverse_root(body)), z[4:7]) - ca.SX(candidate.shift)
+    w = theta * units.ratio * ca.mtimes(ca.DM(inverse_root(body)), z[4:7]) - ca.SX(candidate.shift)
     rate, reference = ca.substitute([ca.SX(rate), reference], [loop.plant.w], [w])
     rate, reference = ca.substitute([rate, reference], symbols, values)
     # the small terms keep the ratio finite where W vanishes; they lower it by less than 1e-4 of itself
-    value = -rate / (ca.fabs(reference) + 1e-6 * ca.sin(theta) ** 2 + 1e-14)
+    value = -rate / (ca.fabs(reference) + units.reference * (1e-6 * ca.sin(theta) ** 2 + 1e-14))
     arguments = [z, coefficients]
     return ca.Function("f", arguments, [value]), ca.Function("df", arguments, [ca.gradient(value, z)])

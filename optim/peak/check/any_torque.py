@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from ....models.types import Array
 from ...problem import TransferProblem
-from .verify_answer import Excess, rate_function, terminal_excess
+from .verify_answer import Excess, rate_function, state_scale, terminal_excess
 
 Torque = Callable[[Array], Array]
 """Times (n,) in s -> torques (n, 3), N m, body frame."""
@@ -70,6 +70,7 @@ def replay_torque(
     ends = np.array([float(piece.end) for piece in pieces])
     inner = [t for t in knots if 0.0 < t < float(problem.horizon)]
     edges = np.unique(np.concatenate([[float(k) for k in problem.window.knots], inner]))
+    atol = 1e-13 * state_scale(problem)
     x, peak, outside = np.r_[problem.unit_attitude, problem.start_rate], 0.0, 0.0
     for start, end in pairwise(edges):
 
@@ -79,7 +80,7 @@ def replay_torque(
             run()
             return out.copy()
 
-        x = solve_ivp(field, (start, end), x, method="DOP853", rtol=1e-11, atol=1e-13).y[:, -1]
+        x = solve_ivp(field, (start, end), x, method="DOP853", rtol=1e-11, atol=atol).y[:, -1]
         times = start + (end - start) * np.linspace(1e-6, 1 - 1e-6, samples)
         values = np.asarray(torque(times), dtype=float)
         piece = pieces[int(np.searchsorted(ends, (start + end) / 2))]

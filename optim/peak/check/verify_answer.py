@@ -58,6 +58,11 @@ def way_to_go(problem: TransferProblem) -> float:
     return problem.angle + float(np.linalg.norm(problem.start_rate)) * float(problem.horizon)
 
 
+def state_scale(problem: TransferProblem) -> Array:
+    """Sizes to which an absolute error of a state (7,) is held: 1 rad, and 1 rad over the transfer time."""
+    return np.asarray(np.r_[np.ones(4), np.full(3, 1.0 / float(problem.horizon))])
+
+
 def terminal_excess(problem: TransferProblem, end: Array) -> Excess:
     """Measure a final state (7,) against the problem's terminal condition."""
     angle = 2.0 * math.atan2(float(np.linalg.norm(end[1:4])), abs(float(end[0])))
@@ -176,7 +181,7 @@ def _integrate(
     keep, (state, torque, out, run) = rate_function(problem)
     states = [np.r_[problem.unit_attitude, problem.start_rate]]
     evaluations, sampled = 0, [np.zeros((0, 7))]
-    atol = 1e-14 * min(1.0, way_to_go(problem) or 1.0)
+    atol = 1e-14 * min(1.0, way_to_go(problem) or 1.0) * state_scale(problem)
     for k, base in enumerate(history.base_torque):
         window = _window_function(pieces[k])
 
