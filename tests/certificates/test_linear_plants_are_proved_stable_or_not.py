@@ -1,6 +1,7 @@
 """Floquet multipliers of linear plants: enclosed, proved on the right side of 1, never on the wrong one."""
 
 import json
+from dataclasses import replace
 from fractions import Fraction as F
 from math import exp
 from pathlib import Path
@@ -10,13 +11,19 @@ import numpy as np
 import pytest
 from intermit.cli.app import run
 from intermit.models.linear import LinearPlant
-from intermit.models.schedule import Hermite, Window, build_schedule
+from intermit.models.schedule import Hermite, Ramps, Window, build_schedule
 from intermit.scenario import load_scenario
 from intermit.study.check.makers import scenario_claims
 from intermit.verify import checker
 from intermit.verify.certificates import as_text, certificate_text
 from intermit.verify.certificates.schedule import schedule_data
-from intermit.verify.linear.stability import spectral_radius, stability_claim
+from intermit.verify.linear.stability import (
+    SpectralRadius,
+    _not_told,
+    spectral_radius,
+    stability_claim,
+    steps_needed,
+)
 from intermit.verify.verdict import Verdict
 from problems import paper_schedule
 
@@ -50,7 +57,7 @@ def test_monodromy_is_enclosed():
     exact = [[[F(x) for x in row] for row in M] for M in (A, F_)]
     centre, radius = checker.monodromy(*exact, profile)
     found = plant(A, [[0], [1]], [[0.4, 0.7]]).transition(F(0), F(8))
-    assert float(radius) < 1e-13
+    assert float(radius) < 1e-24
     assert np.abs(found - np.array([[float(x) for x in row] for row in centre])).max() < 1e-11
 
 
@@ -146,6 +153,55 @@ def test_a_plant_too_fast_to_enclose_is_undecided_with_its_size():
     claim = stability_claim(fast)
     assert claim.verdict is Verdict.UNDECIDED
     assert "steps (at most" in claim.reason
+
+
+@pytest.mark.parametrize(
+    ("modes", "period", "gains"),
+    [
+        ([("3", "0.03")], "8", ("0.1", "0.5")),
+        ([("10", "0.1")], "20", ("0.02", "0.3")),
+        ([("2", "0.02"), ("7", "0.07")], "20", ("0.02", "0.3")),
+    ],
+)
+def test_flexible_modes_beside_an_axis_are_proved(modes, period, gains):
+    """A double integrator under PD control through windows shakes modes of small damping."""
+    n, zero = 2 + 2 * len(modes), "0"
+    A = [[zero] * n for _ in range(n)]
+    B, K = [["0"], ["1"]], [[*gains, *[zero] * (n - 2)]]
+    A[0][1] = "1"
+    for i, (frequency, damping) in enumerate(modes):
+        j = 2 + 2 * i
+        A[j][j + 1], A[j + 1][j], A[j + 1][j + 1] = "1", str(-(F(frequency) ** 2)), "-" + damping
+        B += [["0"], ["-0.1"]]
+    on = F("0.4") * F(period)
+    windows = [Window(F("0.01"), F("0.01") + on)]
+    schedule = build_schedule(windows, Ramps(on / 20, on / 20), period=F(period))
+    stable = LinearPlant.from_rows(A, B, K, schedule)
+    found = stability_claim(stable)
+    assert found.verdict is Verdict.PROVED
+    A[-1][-1] = "0.01"  # the partner: the last mode now grows by itself
+    assert stability_claim(LinearPlant.from_rows(A, B, K, schedule)).verdict is Verdict.REFUTED
+
+
+def test_multipliers_far_below_one_are_proved_without_their_digits():
+    schedule = build_schedule([Window(F(1), F(281))], Ramps(F(140), F(70)), period=F(600))
+    swung = LinearPlant.from_rows([["0", "1"], ["-1", "0.02"]], [["0"], ["1"]], [["0", "0.3"]], schedule)
+    assert stability_claim(swung).verdict is Verdict.PROVED
+
+
+def test_ramps_of_a_thrust_that_nothing_feels_are_no_steps():
+    schedule = build_schedule([Window(F(1), F(29))], Ramps(F(14), F(7)), period=F(60))
+    free = LinearPlant.from_rows([["0", "1"], ["-400", "-0.4"]], [["0"], ["1"]], [["0", "0"]], schedule)
+    assert steps_needed(free, [F(1), F(1)]) < 100
+    felt = LinearPlant.from_rows([["0", "1"], ["-400", "-0.4"]], [["0"], ["1"]], [["0", "1"]], schedule)
+    assert steps_needed(felt, [F(1), F(1)]) > 10_000
+    assert stability_claim(free).verdict is Verdict.PROVED
+
+
+def test_the_reason_is_the_enclosure_only_where_it_is_wide():
+    radius = SpectralRadius(F(0), None, (), 0.9, 1e-3)
+    assert "enclosed too widely" in _not_told(radius)
+    assert "no quadratic function" in _not_told(replace(radius, width=1e-20))
 
 
 def test_decimals_are_proved_as_written():

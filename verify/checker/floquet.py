@@ -20,6 +20,8 @@ GRID = 2**128
 """Entries are multiples of 1/GRID; what is rounded away enters the radius."""
 
 Grid = list[list[int]]
+Enclosed = tuple[Grid, Fraction]
+"""A matrix in multiples of 1/GRID, and a bound of the largest row sum of its error."""
 
 
 def grid_product(A: Grid, B: Grid) -> Grid:
@@ -32,28 +34,57 @@ def monodromy(A: Matrix, F: Matrix, profile: Profile) -> tuple[Matrix, Fraction]
     """Enclose the matrix that takes x(0) to x(T) for x' = (A - g(t) F) x: a centre and a radius.
 
     The radius bounds the largest row sum of the error. Each piece of g is cut so that the Taylor
-    series of the transition matrix converges fast; its tail is bounded by a majorant.
+    series of the transition matrix converges fast; its tail is bounded by a majorant. Where g is constant
+    one step is squared; products are taken in pairs, so that the error grows with the transition matrices
+    themselves, which stay small where the plant does, and not with the product of the steps' norms.
     """
-    n = len(A)
-    centre = [[GRID * (i == j) for j in range(n)] for i in range(n)]
-    radius = Fraction(0)
-    for start, stop in pairwise(profile.knots):
-        size = (stop - start) * (norm(A) + norm(F))
-        count = 1
-        require(size < 10**5, "a piece of the schedule is too long for its plant")
-        while count < 2 * size:
-            count *= 2
-        cuts = [start + (stop - start) * Fraction(j, count) for j in range(count + 1)]
-        for a, b in halved(pairwise(cuts), lambda a, b: reach(A, F, profile.gain(a, b), b - a) > MAX_REACH):
-            step, error = transition(A, F, profile.gain(a, b), b - a)
-            radius = grid_norm(step) * radius + error * (grid_norm(centre) + radius) + Fraction(n, GRID)
-            radius = Fraction(int(radius * GRID) + 1, GRID)
-            centre = grid_product(step, centre)
+    pieces = (across(A, F, profile, start, stop) for start, stop in pairwise(profile.knots))
+    centre, radius = joined_all(pieces)
     return [[Fraction(x, GRID) for x in row] for row in centre], radius
 
 
-MAX_REACH = 4
-"""Steps are halved until the majorant at four times their length is at most exp of this."""
+def across(A: Matrix, F: Matrix, profile: Profile, start: Fraction, stop: Fraction) -> Enclosed:
+    """Enclose the transition matrix over one piece of g."""
+    size = (stop - start) * (norm(A) + norm(F))
+    require(size < 10**5, "a piece of the schedule is too long for its plant")
+    count, gain = 1, profile.gain(start, stop) if norm(F) else Form([0])
+    while count < 2 * size:
+        count *= 2
+    if not any(power_coefficients(gain)[1:]):
+        step = transition(A, F, gain, (stop - start) / count)
+        while count > 1:
+            step, count = joined(step, step), count // 2
+        return step
+    cuts = [start + (stop - start) * Fraction(j, count) for j in range(count + 1)]
+    steps = halved(pairwise(cuts), lambda a, b: reach(A, F, profile.gain(a, b), b - a) > MAX_REACH)
+    return joined_all(transition(A, F, profile.gain(a, b), b - a) for a, b in steps)
+
+
+def joined_all(parts: Iterable[Enclosed]) -> Enclosed:
+    """Return the product of parts that follow one another in time, joined in pairs of equal count."""
+    held: list[tuple[int, Enclosed]] = []
+    for part in parts:
+        count, after = 1, part
+        while held and held[-1][0] == count:
+            after, count = joined(after, held.pop()[1]), 2 * count
+        held.append((count, after))
+    _, total = held.pop()
+    while held:
+        total = joined(total, held.pop()[1])
+    return total
+
+
+def joined(after: Enclosed, before: Enclosed) -> Enclosed:
+    """Return the product of two enclosed matrices: |XY - xy| <= |x| |Y - y| + |X - x| (|y| + |Y - y|)."""
+    (x, a), (y, b) = after, before
+    radius = grid_norm(x) * b + a * (grid_norm(y) + b) + Fraction(len(x), GRID)
+    return grid_product(x, y), Fraction(int(radius * GRID) + 1, GRID)
+
+
+RATIO = 16
+"""How many times its length a step's majorant is looked at."""
+MAX_REACH = 12
+"""Steps are halved until the majorant there is at most exp of this."""
 MAX_HALVINGS = 12
 
 
@@ -73,9 +104,9 @@ def halved(
 
 
 def reach(A: Matrix, F: Matrix, gain: Form, h: Fraction) -> Fraction:
-    """Logarithm of the majorant of a step's Taylor series at four times its length."""
+    """Logarithm of the majorant of a step's Taylor series at `RATIO` times its length."""
     sizes = [abs(g) * norm(F) + (norm(A) if j == 0 else 0) for j, g in enumerate(power_coefficients(gain))]
-    return sum((h * m * Fraction(4) ** (j + 1) / (j + 1) for j, m in enumerate(sizes)), Fraction(0))
+    return sum((h * m * Fraction(RATIO) ** (j + 1) / (j + 1) for j, m in enumerate(sizes)), Fraction(0))
 
 
 def grid_norm(A: Grid) -> Fraction:
@@ -83,12 +114,12 @@ def grid_norm(A: Grid) -> Fraction:
     return Fraction(max(sum(map(abs, row)) for row in A), GRID)
 
 
-def transition(A: Matrix, F: Matrix, gain: Form, h: Fraction) -> tuple[Grid, Fraction]:
+def transition(A: Matrix, F: Matrix, gain: Form, h: Fraction) -> Enclosed:
     """Enclose the transition matrix over one step: Taylor terms X_k of X' = sum_j M_j x^j X, 0 <= x <= 1.
 
     (k + 1) X_{k+1} = sum_j M_j X_{k-j}, in multiples of 1/GRID. With m_j >= |M_j| the terms of
     exp(sum m_j x^(j+1)/(j+1)) dominate |X_k|; an error e put into one term, or into M, moves the
-    sum by at most e exp(2 sum m_j); at x = 4 the same series bounds the tail left out.
+    sum by at most e exp(2 sum m_j); at x = RATIO the same series bounds the tail left out.
     """
     n, powers = len(A), power_coefficients(gain)
     M: list[Grid] = []
@@ -110,8 +141,8 @@ def transition(A: Matrix, F: Matrix, gain: Form, h: Fraction) -> tuple[Grid, Fra
         total_ = [[x + y for x, y in zip(*pair, strict=True)] for pair in zip(total_, term, strict=True)]
     sizes = [grid_norm(m) + Fraction(n, GRID) for m in M]
     moved = 3 ** (int(2 * sum(sizes, Fraction(0))) + 1)
-    reach = sum((m * Fraction(4) ** (j + 1) / (j + 1) for j, m in enumerate(sizes)), Fraction(0))
-    error = Fraction(n * (TERMS + len(M)), GRID) * moved + Fraction(3 ** (int(reach) + 1), 4 ** (TERMS + 1))
+    far = sum((m * Fraction(RATIO) ** (j + 1) / (j + 1) for j, m in enumerate(sizes)), Fraction(0))
+    error = Fraction(n * (TERMS + len(M)), GRID) * moved + Fraction(3 ** (int(far) + 1), RATIO ** (TERMS + 1))
     return total_, error
 
 

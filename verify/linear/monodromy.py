@@ -2,7 +2,7 @@
 
 With x in [0, 1] the time within a step and M_j h times the coefficients of A - g F in x, the terms of
 X' = sum_j M_j x^j X are (k + 1) X_{k+1} = sum_j M_j X_{k-j}. For m_j >= |M_j| the terms of
-exp(sum m_j x^(j+1)/(j+1)) dominate them, and that series at x = 4 bounds the tail left out.
+exp(sum m_j x^(j+1)/(j+1)) dominate them, and that series at x = 16 bounds the tail left out.
 """
 
 from __future__ import annotations
@@ -25,7 +25,9 @@ Enclosed = tuple[Matrix, Fraction]
 TERMS = 30
 MAX_SIZE = Fraction(1, 2)
 """Norm of h (A - g F), |g| <= 1, in a step."""
-MAX_REACH = 4
+RATIO = 16
+"""How many times its length a step's majorant is looked at."""
+MAX_REACH = 12
 MAX_HALVINGS = 12
 
 
@@ -42,23 +44,32 @@ def monodromy(A: Rows, F: Rows, profile: PiecewisePolynomial) -> Enclosed:
     def across(shape: Coefficients, length: Fraction) -> Any:
         """Transition matrix of one piece of g, cut until the series of every part converges fast."""
         count = max(1, ceil(length * speed / MAX_SIZE))
+        if len(shape) <= 1 or not norm(F):
+            doublings = (count - 1).bit_length()
+            total = _transition(_field(A, F, shape[:1], length / 2**doublings))
+            for _ in range(doublings):
+                total = total * total
+            return total
         for _ in range(MAX_HALVINGS):
             cuts = [compose_affine(shape, Fraction(j, count), Fraction(1, count)) for j in range(count)]
             fields = [_field(A, F, gain, length / count) for gain in cuts]
             if all(_reach(field) <= MAX_REACH for field in fields):
                 break
             count *= 2
-        total = _identity(len(A))
-        for field in fields:
-            total = _transition(field) * total
-        return total
+        return _product([_transition(field) for field in fields])
 
-    total = _identity(len(A))
-    for piece in profile.pieces:
-        total = across(piece.shape, piece.length) * total
+    total = _product([across(piece.shape, piece.length) for piece in profile.pieces])
     entries = [[total[i, j] for j in range(len(A))] for i in range(len(A))]
     centre = tuple(tuple(exact_above(x.mid()) for x in row) for row in entries)
     return centre, max(sum((exact_above(x.rad()) for x in row), Fraction(0)) for row in entries)
+
+
+def _product(parts: Sequence[Any]) -> Any:
+    """Product of matrices in order of time, by halves: the error grows with the partial products alone."""
+    if len(parts) == 1:
+        return parts[0]
+    middle = len(parts) // 2
+    return _product(parts[middle:]) * _product(parts[:middle])
 
 
 def _identity(n: int) -> Any:
@@ -77,8 +88,8 @@ def _field(A: Rows, F: Rows, gain: Sequence[Fraction], h: Fraction) -> list[Matr
 
 
 def _reach(field: Sequence[Rows]) -> Fraction:
-    """Logarithm of the majorant at four times the step."""
-    return sum((norm(M) * Fraction(4) ** (j + 1) / (j + 1) for j, M in enumerate(field)), Fraction(0))
+    """Logarithm of the majorant at `RATIO` times the step."""
+    return sum((norm(M) * Fraction(RATIO) ** (j + 1) / (j + 1) for j, M in enumerate(field)), Fraction(0))
 
 
 def _transition(field: Sequence[Rows]) -> Any:
@@ -94,5 +105,5 @@ def _transition(field: Sequence[Rows]) -> Any:
         term *= arb(1) / (k + 1)
         terms.append(term)
         total += term
-    tail = arb(0, 1) * (ball(_reach(field)).exp() / arb(4) ** (TERMS + 1))
+    tail = arb(0, 1) * (ball(_reach(field)).exp() / arb(RATIO) ** (TERMS + 1))
     return total + arb_mat([[tail] * n for _ in range(n)])

@@ -11,13 +11,13 @@ import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import pairwise
 from math import ceil
 from typing import Any, final
 
 import numpy as np
 
 from ...models.linear import LinearPlant
+from ...models.schedule.piecewise import Piece
 from ...models.types import Array
 from .. import checker
 from ..certificates.format import Certificate, certificate_text
@@ -31,8 +31,10 @@ from .monodromy import Enclosed, monodromy, norm
 
 BACKING_OFF = (1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
 """Relative distances from the computed spectral radius at which a P is tried, nearest first."""
-MAX_STEPS = 20_000
-"""Steps of the enclosure that are tried; each is about a millisecond for a small plant."""
+MAX_SIZE = 1e5
+"""Greatest |A| + |B K| times the length of a piece of g, as the checker takes it."""
+MAX_STEPS = 8_000
+"""Steps of the enclosure that are tried; each takes the checker some milliseconds for a small plant."""
 __all__ = ["SpectralRadius", "plant_data", "spectral_radius", "stability_claim"]
 KEY = "linear.stable"
 SOURCE = CLAIM_KEYS[KEY].source
@@ -47,11 +49,15 @@ class SpectralRadius:
     ----------
     low, high : the spectral radius lies strictly between them
     certificates : of the upper and of the lower bound, as far as found
+    guess : computed spectral radius, not proved
+    width : of the monodromy matrix's enclosure: its error over its own size, largest row sums
     """
 
     low: Fraction
     high: Fraction | None
     certificates: tuple[Certificate, ...]
+    guess: float = 0.0
+    width: float = 0.0
 
 
 def spectral_radius(plant: LinearPlant) -> SpectralRadius:
@@ -68,12 +74,16 @@ def spectral_radius(plant: LinearPlant) -> SpectralRadius:
         raise ValueError("Floquet multipliers need a periodic schedule: give it a period")
     scale = balancing_scale(plant)
     steps = steps_needed(plant, scale)
-    if steps > MAX_STEPS:
+    A, F = _fields(plant, scale)
+    longest = float(max(p.length for p in _pieces(plant)) * (norm(A) + norm(F)))
+    if steps > MAX_STEPS or longest >= MAX_SIZE:
+        size = f"takes {steps} steps (at most {MAX_STEPS} are tried)"
+        if steps <= MAX_STEPS:
+            size = f"leads over a piece of g that is {longest:.3g} of its times long (at most {MAX_SIZE:g})"
         raise OverflowError(
             "no quadratic function was found that falls at every gain, and enclosing the monodromy matrix "
-            f"takes {steps} steps (at most {MAX_STEPS} are tried): period times |A| + |B K| is that long"
+            f"{size}: period times |A| + |B K| is that long"
         )
-    A, F = _fields(plant, scale)
     enclosed = monodromy(A, F, plant.schedule.profile)
     centre = np.array([[float(x) for x in row] for row in enclosed[0]])
     guess = float(np.abs(np.linalg.eigvals(centre)).max())
@@ -84,6 +94,8 @@ def spectral_radius(plant: LinearPlant) -> SpectralRadius:
         Fraction(0) if lower is None else lower.claim["radius"],
         None if upper is None else upper.claim["radius"],
         found,
+        guess,
+        float(enclosed[1] / norm(enclosed[0])) if norm(enclosed[0]) else 0.0,
     )
 
 
@@ -116,11 +128,16 @@ def _fields(plant: LinearPlant, scale: Sequence[Fraction] | None = None) -> tupl
 
 
 def steps_needed(plant: LinearPlant, scale: Sequence[Fraction]) -> int:
-    """Taylor steps of the enclosure, as the checker cuts a period: at least one a piece of g."""
+    """Taylor steps of the enclosure, as the checker cuts a period; one is squared where g is constant."""
     A, F = _fields(plant, scale)
     speed = norm(A) + norm(F)
-    knots = plant.schedule.profile.knots
-    return sum(max(1, ceil(4 * speed * (b - a))) for a, b in pairwise(knots))
+    constant = norm(F) == 0
+    counts = [(max(1, ceil(4 * speed * p.length)), constant or len(p.shape) <= 1) for p in _pieces(plant)]
+    return sum(count.bit_length() if squared else count for count, squared in counts)
+
+
+def _pieces(plant: LinearPlant) -> list[Piece]:
+    return list(plant.schedule.profile.pieces)
 
 
 def stability_claim(plant: LinearPlant) -> Claim:
@@ -170,17 +187,33 @@ def stability_claim(plant: LinearPlant) -> Claim:
     return stated(
         KEY, statement, Verdict.UNDECIDED, quantities=quantities,
         reason=_not_told(found),
-        next_step="change a gain or an on-time slightly and see on which side it falls",
+        next_step=_step(found),
     )  # fmt: skip
+
+
+WIDE = 1e-12
+"""Relative error of the monodromy matrix above which its enclosure is why nothing is proved."""
 
 
 def _not_told(found: SpectralRadius) -> str:
     """Say how near 1 the largest multiplier was enclosed."""
+    if found.high is None and found.width > WIDE:
+        return (
+            f"the largest multiplier is computed as {found.guess:.6g} in modulus, and the monodromy matrix "
+            f"is enclosed too widely to prove it: its error may be {found.width:.1g} of its size"
+        )
     if found.high is None:
         return (
-            "no quadratic function was found that changes by the computed multipliers' size in every period"
+            f"the largest multiplier is computed as {found.guess:.6g} in modulus, and no quadratic function "
+            "was found that changes by about that in every period"
         )
     return f"the largest multiplier's modulus lies between {float(found.low):.9g} and {float(found.high):.9g}"
+
+
+def _step(found: SpectralRadius) -> str:
+    if found.high is None and found.width > WIDE:
+        return "leave out states that are fast and stable by themselves, or shorten the period"
+    return "change a gain or an on-time slightly and see on which side it falls"
 
 
 def _refuted_by_volume(found: Certificate, statement: str) -> Claim:
@@ -218,9 +251,8 @@ def _proved(
     """The tightest certificate of one side that the checker accepts."""
     if guess <= 0:
         return None
-    for distance in BACKING_OFF:
-        r = Fraction(guess) * (1 + (Fraction(distance) if side == "below" else -Fraction(distance)))
-        r = Fraction(round(r * 2**60), 2**60)
+    for near in _radii(guess, side):
+        r = Fraction(round(near * 2**60), 2**60)
         witness = _stein(centre / float(r), side) if r > 0 else None
         if witness is None:
             continue
@@ -232,6 +264,14 @@ def _proved(
         if finding.valid:
             return certificate
     return None
+
+
+def _radii(guess: float, side: str) -> list[Fraction]:
+    """Radii that are tried: near the computed one, then between it and 1, which decides."""
+    sign = 1 if side == "below" else -1
+    near = [Fraction(guess) * (1 + sign * Fraction(distance)) for distance in BACKING_OFF]
+    towards_one = [Fraction(guess**0.5), Fraction((1 + guess) / 2)] if sign * (1 - guess) > 0 else []
+    return near + towards_one
 
 
 def _changes(enclosed: Enclosed, r: Fraction, rows: Matrix, side: str) -> bool:
