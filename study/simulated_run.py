@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import final
 
 import numpy as np
 
-from ..models.closed_loop import Saturation
 from ..models.laws import Law
 from ..models.mission import TorqueLimit
 from ..models.norms import LARGEST_COMPONENT
@@ -21,8 +20,8 @@ from ..models.simulation import (
     SimulationError,
     Trajectory,
     invariants,
-    read_figures,
-    simulate,
+    read_mission_figures,
+    simulate_mission,
 )
 from ..models.simulation.idle import idle_lead
 from ..models.types import Array
@@ -98,27 +97,20 @@ def _excess_instant(trajectory: Trajectory, asked: TorqueLimit, peak: float) -> 
 
 def run_law(scenario: Scenario, law: Law) -> Run:
     """Simulate a law from the scenario's initial state to its horizon."""
-    mission, saturation = scenario.mission, None
-    if scenario.simulation.saturate and mission.limit is not None:
-        saturation = Saturation(mission.limit.torque, mission.limit.norm)
+    mission = scenario.mission
     lead, controller = idle_lead(law, mission.schedule, mission.start.rate)
     if lead >= mission.horizon:
         lead, controller = Fraction(0), None
+    if lead:
+        later = starting_at(mission.schedule, lead)
+        mission = replace(mission, schedule=later, horizon=mission.horizon - lead)
     try:
-        trajectory = simulate(
-            law,
-            mission.body,
-            starting_at(mission.schedule, lead) if lead else mission.schedule,
-            quaternion=mission.start.quaternion,
-            rate=mission.start.rate,
-            horizon=mission.horizon - lead,
-            controller=controller,
-            saturation=saturation,
+        trajectory = simulate_mission(
+            law, mission, controller=controller, saturate=scenario.simulation.saturate
         )
     except SimulationError as error:
         return Run(None, failure=str(error))
-    settled = mission.tolerance
-    figures = read_figures(trajectory, attitude=settled.attitude, rate=settled.rate)
+    figures = read_mission_figures(trajectory, mission)
     return Run(trajectory, figures, invariants(trajectory), origin=lead)
 
 

@@ -15,6 +15,7 @@ from .metrics import (
     settling_time,
     torque_metrics,
 )
+from .missions import read_mission_figures, simulate_mission
 from .phases import Phase, phase_field, phases_between, signal_degree
 from .right_hand_side import SimulationError
 from .trajectory import Segment, Signals, Trajectory
@@ -39,8 +40,10 @@ __all__ = [
     "phase_field",
     "phases_between",
     "read_figures",
+    "read_mission_figures",
     "settling_time",
     "signal_degree",
     "simulate",
+    "simulate_mission",
     "torque_metrics",
 ]

@@ -17,8 +17,8 @@ from ...models.simulation import (
     Trajectory,
     peak_commanded_torque,
     peak_torque,
-    read_figures,
-    simulate,
+    read_mission_figures,
+    simulate_mission,
 )
 
 
@@ -100,10 +100,6 @@ def run_law(label: str, law: Law, mission: Mission, *, method: DOP853 = ACCURATE
     SimulationError
         If the run cannot be carried to the mission's horizon.
     """
-    trajectory = simulate(
-        law, mission.body, mission.schedule, quaternion=mission.start.quaternion, rate=mission.start.rate,
-        horizon=mission.horizon, method=method,
-    )  # fmt: skip
-    settled = mission.tolerance
-    figures = read_figures(trajectory, attitude=settled.attitude, rate=settled.rate, until_settled=True)
+    trajectory = simulate_mission(law, mission, method=method)
+    figures = read_mission_figures(trajectory, mission, until_settled=True)
     return LawRun(label=label, law=law, mission=mission, trajectory=trajectory, figures=figures)

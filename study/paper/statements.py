@@ -76,8 +76,10 @@ def _higher_later(slow: LawRun, reference: LawRun) -> Statement:
     schedule, end = slow.mission.schedule, slow.mission.horizon
     for window in schedule.windows_between(schedule.windows[0].off, end):
         t = np.linspace(float(window.on), min(float(window.off), float(end)), 400)
-        a = float(np.abs(slow.trajectory.signals(t).applied_torque).max())
-        b = float(np.abs(reference.trajectory.signals(t).applied_torque).max())
+        a, b = (
+            float(LARGEST_COMPONENT.peak(run.trajectory.signals(t).applied_torque.T).max())
+            for run in (slow, reference)
+        )
         if a > b:
             detail = f"from the window at {float(window.on):g} s: {a:.3g} N m against {b:.3g} N m"
             return Statement("higher_later", _LATER, True, detail)
