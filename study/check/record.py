@@ -226,12 +226,13 @@ def certificate_entry(
     def held(role: BoundRole) -> str | None:
         return f"{key}.{role}" if f"{key}.{role}" in arrays else None
 
-    floor = next(claim for claim in case.claims if claim.key == "filter.floor")
+    claims = {claim.key: claim for claim in case.claims}
+    proved = claims.get("filter.floor", claims["convergence"])
     entry = CertificateEntry(
         key=key,
         label=f"certified bounds, {case.choice.label}",
-        claim=floor.statement,
-        quantities=tuple(quantity_entry(q) for q in floor.quantities),
+        claim=proved.statement,
+        quantities=tuple(quantity_entry(q) for q in proved.quantities),
         arrays=BoundArrays(
             time=f"{key}.time",
             filter_floor=held("filter_floor"),

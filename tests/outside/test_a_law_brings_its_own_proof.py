@@ -232,6 +232,9 @@ def test_it_is_reported(folder):
     record = json.loads(next(out.rglob("results.json")).read_text())
     (case,) = record["sections"]["cases"]
     assert [p["unit"] for p in case["parameters"]] == ["1/s", "1/s"]
+    (certified,) = case["certificates"]
+    assert certified["arrays"].get("angle_bound")
+    assert not certified["arrays"].get("filter_floor"), "the law has no filter"
 
 
 def test_the_page_shows_these_files():

@@ -38,7 +38,7 @@ class BoundsOverTime:
     Attributes
     ----------
     time : (n,) starts of the cells, s
-    filter_floor : (n,) lower bound of R, s
+    filter_floor : (n,) lower bound of R, s; inf for a law without filter
     angle_bound : (n,) upper bound of the error angle 2 acos(b0), rad
     rate_bound : (n,) upper bound of |Omega|_J = sqrt(Omega' J Omega), kg^1/2 m rad/s
     speed_bound : (n,) upper bound of |w|, rad/s
@@ -61,16 +61,18 @@ def bounds_over_time(floor: FilterLowerBound, horizon: Fraction, cells: int = CE
     edges[-1] = rounded_up(horizon)
     least = np.full(cells, np.inf)
     gaps, rates, speeds, torques = np.zeros((4, cells))
+    covered = np.zeros(cells, dtype=bool)
     root = sqrt_below(floor.bounds.least)
     for flowpipe in floor.flowpipes:
         for boxes in _unrolled(flowpipe, floor.schedule.period, horizon, cells):
             box, cell = _cells(edges, boxes)
             speed = _speeds(boxes, root)
             applied, _ = torque_bounds(floor.system, floor.bounds, boxes)
+            covered[cell] = True
             np.minimum.at(least, cell, boxes.low_filter[box])
             for held, values in ((gaps, boxes.S), (rates, boxes.y), (speeds, speed), (torques, applied)):
                 np.maximum.at(held, cell, values[box])
-    if not np.all(np.isfinite(least)):
+    if not np.all(covered):
         return None
     angles = np.array([angle_above(gap) for gap in gaps.tolist()])
     return BoundsOverTime(edges[:-1], least, angles, rates, speeds, torques)
