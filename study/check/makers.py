@@ -19,6 +19,7 @@ from ...verify.certificates.facts import fact_certificate, filter_start_certific
 from ...verify.filter.answer import answer
 from ...verify.filter.recognise import follows_filter
 from ...verify.linear.stability import stability_claim
+from ...verify.lyapunov.candidates import offers_storage
 from ...verify.lyapunov.claims import lyapunov_claims
 from ...verify.robust.claims import robust_claims
 from ...verify.schedule.excitation import excitation_claim
@@ -91,7 +92,10 @@ def _filter_start(scenario: Scenario, law: Law) -> Iterable[Claim]:
 
 
 def _lyapunov(scenario: Scenario, law: Law) -> Iterable[Claim]:
-    """About the law's storage function, over the inertia's whole tolerance."""
+    """About the law's storage function, over the inertia's whole tolerance; without one, only if asked."""
+    listed = scenario.check.claims or ()
+    if not offers_storage(law) and not any(key.startswith("lyapunov.") for key in listed):
+        return ()
     mission = scenario.mission
     return lyapunov_claims(law, mission.body, tolerance=mission.inertia_tolerance, schedule=mission.schedule)
 

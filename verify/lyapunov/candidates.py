@@ -19,7 +19,7 @@ from typing import final
 import casadi as ca
 import numpy as np
 
-from ...models.closed_loop import ClosedLoop
+from ...models.closed_loop import ClosedLoop, close_loop
 from ...models.laws import LAWS, Expression, Law
 from ...models.storage import weighted_storage
 
@@ -55,6 +55,13 @@ class Candidate:
     momentum_gradient: Expression | None
     floor: Expression | None
     weight: Expression | None
+
+
+def offers_storage(law: Law) -> bool:
+    """Whether there is a V to speak of: the law's own, or its family's (filter state R, gain kappa)."""
+    own = "storage" in vars(law) or type(law).storage is not Law.storage
+    has_filter = any(state.name == "R" for state in law.controller_states)
+    return own or (has_filter and close_loop(law).control.gain is not None)
 
 
 def storage_step(law: Law) -> str:
