@@ -92,8 +92,8 @@ class ComponentsArgument:
 
     Attributes
     ----------
-    momenta : MomentumSet
-        The invariant set.
+    measured : Measured
+        The invariant set, and the sizes of the transfer's ends.
     path : PathBound
         Travel in the gauge of its part within the box.
     box : three Fraction
@@ -106,12 +106,17 @@ class ComponentsArgument:
         Upper bound of the gauge and of each component of the momentum at the end.
     """
 
-    momenta: MomentumSet
+    measured: Measured
     path: PathBound
     box: Widths
     bounds: ComponentBounds
     coast: Coast
     end: Fraction
+
+    @property
+    def momenta(self) -> MomentumSet:
+        """The set."""
+        return self.measured.momenta
 
 
 Argument = MomentumArgument | PathArgument | ComponentsArgument

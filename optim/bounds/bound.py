@@ -7,23 +7,16 @@ smaller p takes the start to the target. Several bounds are valid at once; the l
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import final
 
-import numpy as np
-
-from ...verify.exact.rounding import rounded_down
 from ..problem import TransferProblem
-from .argument import ComponentsArgument, NamedBound
+from .argument import NamedBound
+from .by_components import by_components
 from .potential.path import PathOptions
 from .prepare import Measured, Prepared
-from .proof import by_momentum, by_path, path_of
-from .sets.gauge import GaugeSet, invariant_set, longest_vertex
+from .proof import by_momentum, by_path
+from .sets.gauge import invariant_set, longest_vertex
 from .sets.momentum_sets import UnitBall
-from .windows.components import ComponentBounds, Widths, component_bounds, peak_from_components
-from .windows.drift import box_for
-from .windows.split import Split, Splits
-from .windows.travel import WindowTravel
 
 
 @final
@@ -115,52 +108,11 @@ def _momentum_and_path(measured: Measured, options: PathOptions, names: tuple[st
 
 def _by_invariant_set(prepared: Prepared, options: PathOptions) -> list[NamedBound]:
     """Bounds through the set that contains the torques and is invariant under free motion."""
-    problem = prepared.problem
-    momenta = invariant_set(problem.body, problem.norm)
+    norm = prepared.problem.norm
+    measured = prepared.measured(invariant_set(prepared.problem.body, norm))
     names = ("momentum in the invariant set", "invariant set")
-    result = _momentum_and_path(prepared.measured(momenta), options, names)
-    if problem.norm.is_cube and options.components:
-        result += _by_components(problem, momenta, options, max(bound.exact for bound in result))
+    result = _momentum_and_path(measured, options, names)
+    if norm.is_cube and options.components:
+        found = by_components(measured, options, max(bound.exact for bound in result))
+        result += [] if found is None else [found]
     return result
-
-
-def _by_components(
-    problem: TransferProblem, momenta: GaugeSet, options: PathOptions, known: Fraction
-) -> list[NamedBound]:
-    """Bound from components, at a trial peak a little above the bound known."""
-    windows = WindowTravel(problem.window)
-    if windows.total == 0 or known <= 0:
-        return []
-    splits, trial = Splits(problem, momenta), float(known) * options.trial
-    split = splits.at_rest(windows.instant(windows.total / 2))
-    bounds = component_bounds(momenta, split.sides, trial)
-    if not problem.starts_at_rest:
-        moving = splits.promising(bounds, options.share, float(known))
-        if moving is None:
-            return []
-        split, bounds = moving, component_bounds(momenta, moving.sides, trial)
-    beta = box_for(split.sides.components(bounds.rates, trial), options.share)
-    if problem.starts_at_rest and all(b >= r for b, r in zip(beta, bounds.widths, strict=True)):
-        return []
-    path = path_of(problem, split.coast.attitude, momenta.with_box(beta), options)
-    peak, bounds = _largest_peak(momenta, split, beta, rounded_down(path.travel - split.slack), bounds)
-    name = "components" if problem.starts_at_rest else "components after a coast"
-    argument = ComponentsArgument(momenta, path, beta, bounds, split.coast, splits.end)
-    return [NamedBound(name, Fraction(peak), argument)]
-
-
-def _largest_peak(
-    momenta: GaugeSet, split: Split, beta: Widths, travel: float, bounds: ComponentBounds
-) -> tuple[float, ComponentBounds]:
-    """Largest peak found for a travel: any trial at or above it is valid, the nearest is the sharpest."""
-    best, box = (0.0, bounds), np.array([float(b) for b in beta])
-    for _ in range(6):
-        peak = peak_from_components(split.sides, bounds, beta, travel)
-        if peak > best[0]:
-            best = peak, bounds
-        allowed = split.sides.allowed(bounds.trial, bounds.rates, box)
-        near = bounds.trial * travel / allowed if allowed else 0.0  # were all in proportion
-        if near <= 0 or best[0] < bounds.trial < best[0] * 1.002:
-            break
-        bounds = component_bounds(momenta, split.sides, near * 1.001)
-    return best

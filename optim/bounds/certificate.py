@@ -20,8 +20,6 @@ from .bound import LowerBound
 from .potential.path import PathBound
 from .potential.separation import Separation
 from .prepare import Measured
-from .sets.gauge import GaugeSet
-from .sets.momentum_sets import MomentumSet, greatest_inertia_above, least_inertia_below
 from .sets.polynomials import exponents
 from .windows.travel import peak_at
 
@@ -39,19 +37,19 @@ def peak_certificate(problem: TransferProblem, bound: NamedBound) -> Certificate
     if not has_certificate(problem.norm):
         return None
     argument = bound.argument
-    witness: dict[str, object] = {"rows": _rows(argument.momenta, problem)}
+    witness: dict[str, object] = {"rows": argument.momenta.pairs}
     if isinstance(argument, MomentumArgument):
         exact = _absorbed(argument.measured, witness)
     else:
-        radius = argument.measured.radius[1] if isinstance(argument, PathArgument) else Fraction(1)
+        radius = argument.measured.radius[1]
         travel = _down(argument.path.travel / radius * _LESS)
-        witness |= {"travel": travel, "speed": _speed_multipliers(argument.momenta, problem)}
+        witness |= {"travel": travel, "speed": argument.momenta.speed_multipliers}
         witness["separations"] = _separations(problem, argument.path, radius)
         if isinstance(argument, PathArgument):
             exact = _allowing(argument, travel, witness)
         else:
             exact = bound.exact * (1 - Fraction(1, 2**60))
-            witness |= _component_witness(argument, problem)
+            witness |= _component_witness(argument)
     peak = Fraction(rounded_down(min(exact, bound.exact)))
     return Certificate(KIND, transfer_data(problem), {"peak": peak}, witness) if peak > 0 else None
 
@@ -94,29 +92,6 @@ def _torque(norm: Norm) -> dict[str, object]:
     return {"by": LARGEST_COMPONENT.key} if norm.is_cube else {"by": "thrusters", "axes": norm.axes}
 
 
-def _rows(momenta: MomentumSet, problem: TransferProblem) -> list[tuple[Fraction, Fraction]]:
-    """Pairs (a, b) of the rows a I + b J^-1."""
-    rows = [(Fraction(1), Fraction(0))]
-    if isinstance(momenta, GaugeSet) and len(momenta.matrices) > 1:
-        rows.append((-1 / greatest_inertia_above(problem.body), Fraction(1)))
-        rows.append((1 / least_inertia_below(problem.body), Fraction(-1)))
-    return rows
-
-
-def _speed_multipliers(momenta: MomentumSet, problem: TransferProblem) -> list[Fraction]:
-    """Multipliers l with J^-2 <= sum l_k M_k, of the two known ways the one with the smaller bound."""
-    low, high = 1 / greatest_inertia_above(problem.body), 1 / least_inertia_below(problem.body)
-    count = len(_rows(momenta, problem))
-    ball = [high**2, *[Fraction(0)] * (count - 1)]
-    if not isinstance(momenta, GaugeSet) or count == 1:
-        return ball
-    both = [low**2, low + high, Fraction(0)]
-    values = [
-        sum((x * g for x, g in zip(way, momenta.levels, strict=False)), Fraction(0)) for way in (ball, both)
-    ]
-    return ball if values[0] <= values[1] else both
-
-
 def _absorbed(measured: Measured, witness: dict[str, object]) -> Fraction:
     """Peak that the momentum argument gives with a size of the end rounded up, which enters the witness."""
     low, high = measured.radius
@@ -151,7 +126,7 @@ def _allowing(argument: PathArgument, travel: Fraction, witness: dict[str, objec
     )
 
 
-def _component_witness(argument: ComponentsArgument, problem: TransferProblem) -> dict[str, object]:
+def _component_witness(argument: ComponentsArgument) -> dict[str, object]:
     bounds, coast = argument.bounds, argument.coast
     witness: dict[str, object] = {
         "argument": "components",
@@ -162,7 +137,7 @@ def _component_witness(argument: ComponentsArgument, problem: TransferProblem) -
         "widths": bounds.width_multipliers,
         "multipliers": bounds.multipliers,
     }
-    if not problem.starts_at_rest:
+    if not argument.measured.prepared.problem.starts_at_rest:
         witness["coast"] = {"attitude": coast.attitude, "turn": coast.turn}
     return witness
 

@@ -29,7 +29,6 @@ from ....verify.exact.matrix import Matrix, quadratic_form, shifted, unit
 from ..program.constraints import CutConstraint, RateConstraint
 from .chart import Vector
 from .momentum_sets import (
-    IDENTITY,
     MomentumSet,
     Row,
     TaylorBoxes,
@@ -59,8 +58,11 @@ class GaugeSet(MomentumSet):
         matrices: tuple[Matrix, ...],
         levels: tuple[Fraction, ...],
         speed: Fraction,
+        pairs: tuple[tuple[Fraction, Fraction], ...],
+        speed_multipliers: tuple[Fraction, ...],
     ) -> None:
         self.body, self.matrices, self.levels = body, matrices, levels
+        self.pairs, self.speed_multipliers = pairs, speed_multipliers
         self._speed = speed
 
     @property
@@ -149,7 +151,8 @@ class GaugeSet(MomentumSet):
         for i, width in enumerate(half_widths):
             matrices.append(unit(i))
             levels.append(Fraction(width) ** 2)
-        return GaugeSet(self.body, tuple(matrices), tuple(levels), speed)
+        parts = tuple(matrices), tuple(levels)
+        return GaugeSet(self.body, *parts, speed, self.pairs, self.speed_multipliers)
 
 
 def invariant_set(body: RigidBody, norm: Norm) -> GaugeSet:
@@ -164,14 +167,17 @@ def invariant_set(body: RigidBody, norm: Norm) -> GaugeSet:
     inverse = body.exact_inverse
     low = 1 / greatest_inertia_above(body)
     high = 1 / least_inertia_below(body)
-    rows = [IDENTITY]
+    one, zero = Fraction(1), Fraction(0)
+    pairs, ways = [(one, zero)], [[high**2]]
     if not has_equal_inertias(body):
-        rows += [shifted(inverse, Fraction(1), low), shifted(inverse, Fraction(-1), -high)]
-    levels = [max(quadratic_form(row, t) for t in vertices) for row in rows]
-    square = high**2 * levels[0]
-    if len(rows) > 1:
-        square = min(square, (low + high) * levels[1] + low**2 * levels[0])
-    return GaugeSet(body, tuple(rows), tuple(levels), square_root(square)[1])
+        pairs += [(-low, one), (high, -one)]
+        ways = [[high**2, zero, zero], [low**2, low + high, zero]]
+    rows = tuple(shifted(inverse, b, -a) for a, b in pairs)
+    levels = tuple(max(quadratic_form(row, t) for t in vertices) for row in rows)
+    squares = [sum((x * g for x, g in zip(way, levels, strict=True)), zero) for way in ways]
+    least = squares.index(min(squares))
+    speed = square_root(squares[least])[1]
+    return GaugeSet(body, rows, levels, speed, tuple(pairs), tuple(ways[least]))
 
 
 def longest_vertex(norm: Norm) -> tuple[Fraction, Fraction]:

@@ -10,6 +10,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from typing import final
 
 import numpy as np
@@ -136,9 +137,20 @@ Row = tuple[Matrix, Fraction]
 
 
 class MomentumSet(ABC):
-    """A compact convex symmetric set of momenta with 0 inside; momentum in N m s per unit of travel."""
+    """A compact convex symmetric set of momenta with 0 inside; momentum in N m s per unit of travel.
+
+    Attributes
+    ----------
+    body : RigidBody
+    pairs : tuple of (a, b)
+        The rows a I + b J^-1 that free motion leaves alone, the first of them (1, 0).
+    speed_multipliers : tuple of Fraction
+        l >= 0, one of those rows each, with J^-2 <= sum l_k M_k: they prove `fastest_rate`.
+    """
 
     body: RigidBody
+    pairs: tuple[tuple[Fraction, Fraction], ...]
+    speed_multipliers: tuple[Fraction, ...]
 
     @property
     @abstractmethod
@@ -196,6 +208,7 @@ class UnitBall(MomentumSet):
     def __init__(self, body: RigidBody) -> None:
         self.body = body
         self._fastest = 1 / least_inertia_below(body)
+        self.pairs, self.speed_multipliers = ((Fraction(1), Fraction(0)),), (self._fastest**2,)
 
     @property
     def rows(self) -> tuple[Row, ...]:
@@ -243,11 +256,13 @@ class UnitBall(MomentumSet):
         return ("ball", self.body.exact_inertia)
 
 
+@lru_cache(maxsize=64)
 def least_inertia_below(body: RigidBody) -> Fraction:
     """Rational lower bound of the least principal inertia, about 1e-12 relative."""
     return least_eigenvalue_below(body.exact_inertia)
 
 
+@lru_cache(maxsize=64)
 def greatest_inertia_above(body: RigidBody) -> Fraction:
     """Rational upper bound of the greatest principal inertia, about 1e-12 relative."""
     return greatest_eigenvalue_above(body.exact_inertia)

@@ -50,8 +50,8 @@ class Split:
 class Splits:
     """The cuts of one transfer."""
 
-    def __init__(self, problem: TransferProblem, momenta: GaugeSet) -> None:
-        self.problem, self.momenta, self.windows = problem, momenta, WindowTravel(problem.window)
+    def __init__(self, problem: TransferProblem, momenta: GaugeSet, windows: WindowTravel) -> None:
+        self.problem, self.momenta, self.windows = problem, momenta, windows
         self._widths = np.array([float(w) for w in widths_of(momenta)[0]])
         inertia = problem.body.exact_inertia
         self._ends = [problem.terminal.rate * length(row)[1] for row in inertia]

@@ -16,6 +16,7 @@ from intermit.optim.bounds.sets.gauge import invariant_set
 from intermit.optim.bounds.windows.components import component_bounds, peak_from_components
 from intermit.optim.bounds.windows.drift import Ways, box_for
 from intermit.optim.bounds.windows.split import Splits
+from intermit.optim.bounds.windows.travel import WindowTravel
 from intermit.optim.problem import Terminal, TransferProblem, quaternion_from_axis_angle
 from scipy.integrate import solve_ivp
 
@@ -68,7 +69,7 @@ def frame(q):
 def worst_shares(problem, peak, *, still=False, runs=6):
     """Largest shares of their bounds: of a component, of the gauge, of the travel to the coast's end."""
     momenta = invariant_set(problem.body, problem.norm)
-    sides = Splits(problem, momenta).after(CUT).sides
+    sides = Splits(problem, momenta, WindowTravel(problem.window)).after(CUT).sides
     kappa = component_bounds(momenta, sides, peak).rates
     cells = sides.opening
     times = np.linspace(0, float(CUT), 201)
@@ -115,7 +116,9 @@ def test_without_growth_a_long_body_would_leave_them():
 @pytest.mark.parametrize("body", [LONG, TILTED])
 def test_a_way_is_near_a_mean_of_its_ends(body):
     problem = transfer(body, ("0.3", "-0.2", "0.1"))
-    ways = Splits(problem, invariant_set(body, problem.norm)).after(CUT).sides.ways
+    ways = (
+        Splits(problem, invariant_set(body, problem.norm), WindowTravel(problem.window)).after(CUT).sides.ways
+    )
     J, inverse = body.inertia, np.linalg.inv(body.inertia)
     edges = np.linspace(0, float(CUT), len(ways.bend) + 1)
     times = np.sort(np.concatenate([edges, (edges[1:] + edges[:-1]) / 2]))
@@ -166,7 +169,7 @@ def test_a_slow_start_is_bounded_as_well_as_one_at_rest():
 def peaks_asked_for(problem, guess, shares):
     """Bounds of a transfer cut at several instants, whether they promise much or not."""
     momenta = invariant_set(problem.body, problem.norm)
-    splits = Splits(problem, momenta)
+    splits = Splits(problem, momenta, WindowTravel(problem.window))
     for share in shares:
         split = splits.after(Fraction(round(problem.horizon * share * 64), 64))
         if split is not None:

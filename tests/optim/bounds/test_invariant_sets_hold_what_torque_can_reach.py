@@ -15,6 +15,7 @@ from intermit.optim.bounds.windows.components import (
     peak_from_components,
 )
 from intermit.optim.bounds.windows.split import Splits
+from intermit.optim.bounds.windows.travel import WindowTravel
 from intermit.optim.problem import TransferProblem
 
 J1 = RigidBody.from_rows([["3.05", "0.14", "0.05"], ["0.14", "2.66", "0.12"], ["0.05", "0.12", "2.18"]])
@@ -107,7 +108,7 @@ def halves(momenta):
     """Both sides of a turn of LONG from rest, cut in the middle."""
     turn = (Fraction(1), Fraction(1), Fraction(0), Fraction(0))
     problem = TransferProblem(body=LONG, window=ONE, attitude=turn, norm=LARGEST_COMPONENT)
-    return Splits(problem, momenta).at_rest(Fraction(5)).sides
+    return Splits(problem, momenta, WindowTravel(problem.window)).at_rest(Fraction(5)).sides
 
 
 def test_components_stay_within_their_bounds():
