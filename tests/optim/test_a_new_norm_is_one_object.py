@@ -162,9 +162,8 @@ def test_a_torque_limit_is_proved_and_one_of_forces_left_open():
     assert claims["torque.limit"].verdict is Verdict.PROVED
     assert "(disc-and-axis)" in claims["torque.limit"].statement
     # the certified bound of a torque's length says nothing about the forces that it takes
-    forces = replace(
-        generous, torque_norm=thrusters([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1]])
-    )
+    five = thrusters([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1]])
+    forces = missions.other(generous, torque_norm=five)
     claims = {claim.key: claim for claim in answer(forces).claims}
     assert claims["torque.limit"].verdict is Verdict.UNDECIDED
     assert "what 5 one-sided thrusters need for it is not bounded" in claims["torque.limit"].reason
