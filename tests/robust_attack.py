@@ -8,7 +8,7 @@ import missions
 import numpy as np
 from floor_attack import random_question
 from intermit.models.ensemble import Tolerances, simulate_ensemble
-from intermit.models.laws import PersistenceFilter
+from intermit.models.laws import AdaptiveScaling, PersistenceFilter
 from intermit.models.members import draw_members
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import Ramps, Window, build_schedule
@@ -22,9 +22,12 @@ SCHEDULE = build_schedule([Window(F(1, 100), F(321, 100))], Ramps(F(1, 100), F(1
 LAW = PersistenceFilter(F(21, 40), F(1))
 
 
-def question(angle=120, rate=F(3, 10), body=BODY, **channels):
+ADAPTIVE = AdaptiveScaling(lambda_=F(21, 40), R0=F(1), k0=F(8, 10), gamma=F(1, 100))
+
+
+def question(angle=120, rate=F(3, 10), body=BODY, law=LAW, **channels):
     return missions.robust(
-        law=LAW, body=body, schedule=SCHEDULE, uncertainty=Uncertainty(**channels),
+        law=law, body=body, schedule=SCHEDULE, uncertainty=Uncertainty(**channels),
         max_angle_deg=F(angle), max_weighted_rate=rate,
     )  # fmt: skip
 

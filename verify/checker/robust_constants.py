@@ -162,6 +162,23 @@ class RobustConstants:
         return max(ZERO, shape + self.mu * (q * q + 1) / (2 * (1 - self.below)))
 
     @property
+    def accelerating(self) -> Fraction:
+        """bv'(J^-1 M J0 - 1) bv <= accelerating |bv|^2."""
+        q = self.q
+        shape = max(self.mean(e) + self.spread(e) * (q + 1 / q) / 2 for e in self.scale)
+        return max(ZERO, shape + self.mu * (q * q + 1) / (2 * (1 - self.below)))
+
+    @property
+    def measured_mismatch(self) -> Fraction:
+        """|J0^1/2 (J^-1 M J0 - 1) bv| <= measured_mismatch |bv|."""
+        return root_above(self.hi) * (self.m + self.r + self.mu * self.q / (1 - self.below))
+
+    @property
+    def metric_ratio(self) -> Fraction:
+        """|x| in J0 is at most this times |x| in the metric."""
+        return root_above(self.lo / self.least)
+
+    @property
     def mismatch(self) -> Fraction:
         """|J^-1 M J0 - 1| <= mismatch."""
         return self.m + self.r * self.q + self.mu * self.q**2 / (1 - self.below)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, partial
 from typing import final
 
 from ...models.laws import Law
@@ -14,13 +15,17 @@ from ..exact.ball import sqrt_above
 from ..filter.certify import FloorOptions
 from ..filter.comparison import BodyBounds
 from ..filter.flowpipe import Flowpipe
-from ..filter.recognise import ComparedLaw, NoComparisonError, compared_law, law_words
+from ..filter.recognise import ComparedLaw, compared_law
 from ..filter.sets import InitialSet
+from .adaptive import RobustAdaptiveSystem
 from .bodies import BodyBin, body_bins
 from .certify import OPTIONS, robust_flowpipe
 from .constants import root_above
 from .persistence import RobustPersistenceSystem
+from .system import RobustSystem
 
+MAX_BINS = 8
+"""Bins of the initial set's error angle for a law that learns."""
 SCALE_BINS = (1, 2, 4)
 """Numbers of bins of the common factor that are tried in turn."""
 
@@ -94,6 +99,11 @@ class RobustFloor:
         return min((p.failed_at for _, p in self.parts if p.failed_at is not None), default=None)
 
     @property
+    def grows(self) -> bool:
+        """Whether a disturbance keeps a gain growing that the law learns."""
+        return self.known.adaptive and self.question.mission.uncertainty.disturbance > 0
+
+    @property
     def repeats(self) -> bool:
         """Whether the bounds stand for all time."""
         return all(pipe.tail is not None for _, pipe in self.parts)
@@ -111,30 +121,56 @@ def certify_robust_floor(question: RobustQuestion) -> RobustFloor:
     """
     q = question
     known = compared_law(q.law)
-    if known.adaptive:
-        raise NoComparisonError(
-            f"{law_words(q.law)} learns its gain: for an unknown body only kappa = 1/R has its inequalities"
-        )
     schedule = q.mission.schedule
-    piece = next(schedule.profile.pieces)
-    g = piece.shape[0] if piece.shape else Fraction(0)
-    gain_term = g * g / known.initial_filter
+    g = next(schedule.profile.pieces).shape
+    gain = known.initial_gain if known.adaptive else 1 / known.initial_filter
+    gain_term = (g[0] if g else Fraction(0)) ** 2 * gain
+    grows = known.adaptive and q.mission.uncertainty.disturbance > 0
+    horizon = q.mission.horizon if grows and schedule.period is not None else q.horizon
     found: RobustFloor | None = None
     for count in SCALE_BINS:
-        parts = []
-        for part in body_bins(q.mission.body, q.mission.uncertainty, count):
-            system = RobustPersistenceSystem(
-                decay=known.decay,
-                initial_filter=known.initial_filter,
-                constants=part.constants,
-                push=part.push,
-            )
-            initial = q.initial(part, gain_term)
-            pipe = robust_flowpipe(system, schedule, initial, horizon=q.horizon, options=q.options)
-            parts.append((part, pipe))
+        parts: list[tuple[BodyBin, Flowpipe]] = []
+        bodies = list(body_bins(q.mission.body, q.mission.uncertainty, count))
+        for part in bodies:
+            system, initial = _system(known, part), q.initial(part, gain_term)
+            prove = partial(robust_flowpipe, system, schedule, horizon=horizon, options=q.options)
+            pipes = binned(prove, initial) if system.is_binned else [prove(initial)]
+            parts += [(part, pipe) for pipe in pipes]
         ends = [p.failed_at if p.failed_at is not None else p.end for _, p in parts if p.tail is None]
         found = RobustFloor(q, known, tuple(parts), min(ends, default=None))
-        if found.failed_at is None or len(parts) < count:
+        if found.failed_at is None or len(bodies) < count:
             break
     assert found is not None
     return found
+
+
+def binned(prove: Callable[[InitialSet], Flowpipe], initial: InitialSet) -> list[Flowpipe]:
+    """Halve the set in the error angle where it is worst: first what fails, then the lowest floor."""
+    pipes = [prove(initial)]
+    while len(pipes) < MAX_BINS:
+        worst = min(pipes, key=lambda p: (p.failed_at is None, float(p.failed_at or 0), p.floor))
+        i = worst.initial
+        middle = (i.s_low + i.s_high) / 2
+        if not i.s_low < middle < i.s_high:
+            break
+        pipes.remove(worst)
+        pipes += [
+            prove(InitialSet(a, b, i.y_low, i.y_high, i.description))
+            for a, b in ((i.s_low, middle), (middle, i.s_high))
+        ]
+    return pipes
+
+
+def _system(known: ComparedLaw, part: BodyBin) -> RobustSystem:
+    lam, R0, constants, push = known.decay, known.initial_filter, part.constants, part.push
+    if not known.adaptive:
+        return RobustPersistenceSystem(decay=lam, initial_filter=R0, constants=constants, push=push)
+    return RobustAdaptiveSystem(
+        decay=lam,
+        initial_filter=R0,
+        learning_rate=known.learning_rate,
+        weight=known.weight,
+        initial_gain=known.initial_gain,
+        constants=constants,
+        push=push,
+    )

@@ -19,6 +19,8 @@ from .bodies import BodyBin, shape_error
 from .consequences import Consequences
 
 KIND = "robust-floor"
+HELD = "held"
+"""A word of a step's forms that only says how it was proposed."""
 
 
 def robust_certificate(floor: RobustFloor, found: Consequences) -> Certificate:
@@ -82,7 +84,7 @@ def uncertainty_data(u: Uncertainty) -> dict[str, object]:
 def _bin(part: BodyBin, pipe: Flowpipe) -> dict[str, object]:
     entry: dict[str, object] = {
         "scale": list(part.scale),
-        "s": Fraction(pipe.initial.s_high),
+        "s": [Fraction(pipe.initial.s_low), Fraction(pipe.initial.s_high)],
         "y": Fraction(pipe.initial.y_high),
         "steps": _steps(pipe.steps),
     }
@@ -90,6 +92,8 @@ def _bin(part: BodyBin, pipe: Flowpipe) -> dict[str, object]:
         tail: dict[str, object] = {"steps": _steps(pipe.tail.steps)}
         if pipe.tail.ratios:
             tail["ratio"] = Fraction(max(pipe.tail.ratios.values()))
+        if "L" in pipe.tail.limits:
+            tail["gain_limit"] = Fraction(pipe.tail.limits["L"])
         entry["tail"] = tail
     return entry
 
@@ -98,7 +102,7 @@ def _steps(steps: Iterable[Step]) -> list[dict[str, object]]:
     return [
         {
             "until": step.stop,
-            "forms": list(step.modes),
+            "forms": [word for word in step.modes if word != HELD],
             "bounds": {name: scaled_integers(c) for name, c in step.controls.items()},
         }
         for step in steps

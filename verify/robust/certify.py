@@ -10,9 +10,9 @@ from ...models.schedule import Schedule
 from ..filter.certify import MIN_DECAY_EXPONENT, FloorOptions
 from ..filter.flowpipe import Flowpipe
 from ..filter.sets import InitialSet
-from ..filter.tail import MAX_RATIO, Tail, find_tail
+from ..filter.tail import Tail, find_tail
 from ..flow.stepping import CannotProceedError, Stepper
-from .persistence import ANGLE, BOTH, CASCADE, RobustPersistenceSystem
+from .system import RobustSystem
 
 OPTIONS = FloorOptions(degree=6, slack=3e-4)
 FINEST = 64
@@ -22,7 +22,7 @@ SETTLING_PERIODS, PUSHED_PERIODS = 3, 6
 
 
 def robust_flowpipe(
-    system: RobustPersistenceSystem,
+    system: RobustSystem,
     schedule: Schedule,
     initial: InitialSet,
     *,
@@ -68,7 +68,7 @@ def robust_flowpipe(
 
 
 def _stops(
-    schedule: Schedule, system: RobustPersistenceSystem, horizon: Fraction | None, options: FloorOptions
+    schedule: Schedule, system: RobustSystem, horizon: Fraction | None, options: FloorOptions
 ) -> Iterator[Fraction]:
     period = schedule.period
     if period is None:
@@ -83,23 +83,20 @@ def _stops(
 
 
 def _tail(
-    system: RobustPersistenceSystem,
+    system: RobustSystem,
     schedule: Schedule,
     start: Fraction,
     state: tuple[float, ...],
     before: tuple[float, ...],
     stepper: Stepper,
 ) -> Tail | None:
-    """Try a repeating part with both pairs of bounds, then with each alone."""
+    """Try what may repeat from here, in the system's order."""
     first = dict(zip(system.names, before, strict=True))
     last = dict(zip(system.names, state, strict=True))
-    for pairs in (BOTH, ANGLE, CASCADE):
-        repeating = system.repeating(pairs)
-        if any(last[name] > MAX_RATIO * first[name] for pair in repeating.decaying for name in pair):
-            continue
-        follow = Stepper(repeating, degree=stepper.degree, slack=stepper.slack, finest=FINEST)
+    for trial in system.repetitions(last, first):
+        follow = Stepper(trial.system, degree=stepper.degree, slack=stepper.slack, finest=FINEST)
         follow.remember(stepper)
-        tail = find_tail(repeating, schedule, start, state, follow)
-        if tail is not None:
+        tail = find_tail(trial.system, schedule, start, trial.state, follow)
+        if tail is not None and trial.accepts(tail):
             return tail
     return None

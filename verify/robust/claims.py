@@ -54,7 +54,8 @@ def robust_claims(
             step = "read the figures of the members that were flown; they are no proof"
         keys = ("robust.floor", key) if _has_filter(question) else (key,)
         return tuple(_undecided(k, question, str(error), step, tuple(seen[k])) for k in keys)
-    if floor.failed_at is not None or (not floor.repeats and question.mission.schedule.period is not None):
+    open_ended = question.mission.schedule.period is not None and not floor.grows
+    if floor.failed_at is not None or (open_ended and not floor.repeats):
         reason, step = _shortfall(floor)
         return tuple(_undecided(k, question, reason, step, tuple(seen[k])) for k in ("robust.floor", key))
     drawn = consequences(floor)
@@ -85,6 +86,10 @@ def _motion_claim(
     """Convergence or the bound for good; of a finite table neither is a limit to speak of."""
     q = floor.question
     quantities = (*_reach(drawn), *beside)
+    if floor.grows:
+        reason = "any disturbance keeps the gain k growing: k' >= 0 never stops, so nothing holds for good"
+        step = f"the bounds over [0, {float(floor.horizon or 0):g}] s stand below (simulation.horizon)"
+        return _undecided(key, q, reason, step, quantities)
     if drawn.ratio is None and drawn.ultimate is None:
         reason = "the table is finite: after its last window nothing acts, so nothing holds for good"
         step = "give the schedule a period if it repeats; the bounds over the table stand below"
@@ -228,7 +233,7 @@ def _is_proved(q: RobustQuestion) -> bool:
         floor = certify_robust_floor(q)
     except ValueError:
         return False
-    return floor.failed_at is None and (floor.repeats or q.mission.schedule.period is None)
+    return floor.failed_at is None and (floor.repeats or floor.grows or q.mission.schedule.period is None)
 
 
 def _undecided(

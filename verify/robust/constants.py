@@ -123,6 +123,26 @@ class Constants:
         return max(ZERO, shape + self.turn.mu * (q * q + 1) / (2 * (1 - i.below)))
 
     @cached_property
+    def accelerating(self) -> Fraction:
+        """Bv'Phi bv <= accelerating |bv|^2, and >= 0."""
+        q, i = self.q, self.inertia
+        shape = max(i.mean(e) + i.spread(e) * (q + 1 / q) / 2 for e in (i.scale_low, i.scale_high))
+        return max(ZERO, shape + self.turn.mu * (q * q + 1) / (2 * (1 - i.below)))
+
+    @cached_property
+    def measured_mismatch(self) -> Fraction:
+        """|J0^1/2 Phi bv| <= measured_mismatch |bv|, kg^1/2 m: J0^1/2 Phi = (m + P) J0^1/2."""
+        i = self.inertia
+        return root_above(i.hi) * (
+            i.greatest_mean + i.greatest_spread + self.turn.mu * self.q / (1 - i.below)
+        )
+
+    @cached_property
+    def metric_ratio(self) -> Fraction:
+        """|x| in J0 is at most this times |x| in the metric of y."""
+        return root_above(self.inertia.lo / self.inertia.least)
+
+    @cached_property
     def mismatch(self) -> Fraction:
         """|Phi| <= mismatch."""
         i = self.inertia

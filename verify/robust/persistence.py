@@ -41,11 +41,12 @@ from ..filter.comparison import (
     filter_scale,
     rate_factor,
 )
-from ..filter.flowpipe import LawComparison
 from ..filter.sets import InitialSet
-from ..flow.inequalities import Slope, StatedSystem
+from ..filter.tail import MAX_RATIO
+from ..flow.inequalities import Slope
 from ..flow.stepping import Modes
 from .constants import CELLS, Constants, cell_end, greatest_n
+from .system import Repetition, RobustSystem
 
 WIDER = (1.03, 1.2, 1.7)
 """Factors by which the bound of S at a step's start is taken for the whole step, in turn."""
@@ -59,7 +60,7 @@ BOTH, ANGLE, CASCADE = "both", "angle", "cascade"
 
 
 @final
-class RobustPersistenceSystem(StatedSystem, LawComparison):
+class RobustPersistenceSystem(RobustSystem):
     """Components K, L, y, s, v, z, W, r of the module's inequalities.
 
     Parameters
@@ -125,6 +126,14 @@ class RobustPersistenceSystem(StatedSystem, LawComparison):
             scalable=not self.push,
             pairs=pairs,
         )
+
+    def repetitions(self, last: Mapping[str, float], first: Mapping[str, float]) -> Iterator[Repetition]:
+        """Both pairs of bounds, then each alone, where what must shrink did so over the period before."""
+        state = tuple(last[name] for name in self.names)
+        for pairs in (BOTH, ANGLE, CASCADE):
+            system = self.repeating(pairs)
+            if all(last[name] <= MAX_RATIO * first[name] for pair in system.decaying for name in pair):
+                yield Repetition(system, state)
 
     def _kept(self, state: Sequence[float]) -> str:
         """The pairs that still say something in this state."""

@@ -9,11 +9,13 @@ from intermit.verify.certificates.format import certificate_text
 from intermit.verify.robust.answer import certify_robust_floor
 from intermit.verify.robust.certificate import robust_certificate
 from intermit.verify.robust.consequences import consequences
-from robust_attack import question, random_robust_question
+from robust_attack import ADAPTIVE, question, random_robust_question
 
 CASES = {
     "shape": {"inertia_relative": F(2, 100)},
     "push": {"disturbance": F(1, 100), "misalignment_deg": F(1, 2)},
+    "learns": {"law": ADAPTIVE, "inertia_relative": F(2, 100)},
+    "pushed": {"law": ADAPTIVE, "disturbance": F(1, 100)},
     "bins": {"inertia_scale": (F(-8, 100), F(8, 100)), "thrust_error_varies": "never"},
 }
 
@@ -63,6 +65,12 @@ FORGERIES = {
     "least inertia": ("shape", lambda p: p["certificates"][0]["witness"].update(lo="2.3")),
     "a ratio with a push": ("push", lambda p: p["certificates"][0]["witness"]["bins"][0]["tail"].update(
         ratio="0.5")),
+    "a smaller gain": ("learns", lambda p: p["data"]["initial"].update(k="0.79")),
+    "another gamma": ("learns", lambda p: p["data"]["parameters"].update(gamma="0.011")),
+    "a lower gain limit": ("learns", lambda p: p["certificates"][0]["witness"]["bins"][0]["tail"].update(
+        gain_limit="0.8")),
+    "an angle gone": ("learns", lambda p: p["certificates"][0]["witness"]["bins"].pop(2)),
+    "no horizon": ("pushed", lambda p: p["certificates"][0]["claim"].pop("horizon")),
     "an unknown key": ("shape", lambda p: p["data"]["uncertainty"].update(delay="0.1")),
     "an unknown law": ("shape", lambda p: p["data"]["law"].update(name="adaptive-scaling")),
 }  # fmt: skip

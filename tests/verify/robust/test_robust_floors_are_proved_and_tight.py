@@ -14,7 +14,7 @@ from intermit.verify.filter.sets import InitialSet
 from intermit.verify.robust.answer import certify_robust_floor
 from intermit.verify.robust.consequences import consequences
 from intermit.verify.robust.inertia_set import relative_error
-from robust_attack import BODY, LAW, SCHEDULE, TOLERANCE, attack, question
+from robust_attack import ADAPTIVE, BODY, LAW, SCHEDULE, TOLERANCE, attack, question
 
 
 def test_nothing_uncertain_gives_the_nominal_floor():
@@ -92,6 +92,22 @@ def test_entries_are_turned_into_the_least_relative_error():
     assert float(relative_error(BODY, tolerance)) == pytest.approx(0.0242, abs=5e-3)
     diagonal = RigidBody.from_rows([[1, 0, 0], [0, 2, 0], [0, 0, 2]])
     assert relative_error(diagonal, ((F(1, 10), 0, 0), (0, 0, 0), (0, 0, 0))) == pytest.approx(0.1, abs=2e-6)
+
+
+def test_a_law_that_learns_is_certified_for_every_body():
+    floor = certify_robust_floor(question(law=ADAPTIVE, inertia_relative=F(2, 100)))
+    found = consequences(floor)
+    assert floor.repeats
+    assert floor.value > 0.145
+    assert found.ratio < 0.4
+
+
+def test_a_disturbance_keeps_a_gain_growing():
+    """Nothing holds for all time: the bounds end at the horizon asked for."""
+    floor = certify_robust_floor(question(law=ADAPTIVE, disturbance=F(1, 100)))
+    assert floor.failed_at is None
+    assert not floor.repeats
+    assert floor.horizon == 48
 
 
 def test_a_law_of_other_equations_is_refused():
