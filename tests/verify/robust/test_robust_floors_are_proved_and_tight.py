@@ -107,7 +107,7 @@ def test_a_disturbance_keeps_a_gain_growing():
     floor = certify_robust_floor(question(law=ADAPTIVE, disturbance=F(1, 100)))
     assert floor.failed_at is None
     assert not floor.repeats
-    assert floor.horizon == 48
+    assert floor.horizon == 56
 
 
 def test_a_law_of_other_equations_is_refused():
