@@ -13,9 +13,9 @@ from .function import DerivativeFunction
 
 Margin = Literal["rate", "bound"]
 
-BARRIER = 1e-10
-"""Added to the margin's numerator in the search, so that it keeps off the equilibrium, where the margin
-is 0/0: there W is about 1e-5 and 1 - b0 still has ten digits."""
+BARRIER = 1e-12
+"""Added to the margin's numerator in the search, in units of the largest rate times a W half way out, so that
+it keeps off the equilibrium, where the margin is 0/0: 1 - b0 still has ten digits there."""
 SHRINK = 0.1
 """Near the equilibrium V' and W are both quadratic: a worst direction found far away is tried there too."""
 ITERATIONS = 100
@@ -55,11 +55,15 @@ def refine(
     """
     from scipy.optimize import minimize
 
-    objective = _Objective(check, margin, uniform)
     low, high = domain.bounds()
-    limits = [(-2.0, 2.0)] * 4 + list(zip(low.tolist(), high.tolist(), strict=True))
-    best, where, evaluations = np.inf, starts[0], 0
-    for start in np.vstack([starts, _shrunk(starts)]):
+    largest = np.maximum(np.abs(low), np.abs(high))
+    sizes = np.r_[np.ones(4), np.where(largest > 0, largest, 1.0)]  # no coordinate has a unit in the search
+    objective = _Objective(check, margin, uniform, sizes)
+    limits = [(-2.0, 2.0)] * 4 + list(
+        zip((low / sizes[4:]).tolist(), (high / sizes[4:]).tolist(), strict=True)
+    )
+    best, where, evaluations = np.inf, starts[0] / sizes, 0
+    for start in np.vstack([starts, _shrunk(starts)]) / sizes:
         found = minimize(
             objective,
             start,
@@ -73,7 +77,7 @@ def refine(
             value, _ = objective(point)
             if value < best:
                 best, where = value, point
-    return Refinement(objective.margin(where), where, evaluations)
+    return Refinement(objective.margin(where), where * sizes, evaluations)
 
 
 def _shrunk(starts: Array) -> Array:
@@ -97,17 +101,19 @@ class _Objective:
     """
 
     def __init__(
-        self, check: DerivativeFunction, margin: Margin, uniform: tuple[Array, Array, Array]
+        self, check: DerivativeFunction, margin: Margin, uniform: tuple[Array, Array, Array], sizes: Array
     ) -> None:
         import casadi as ca
 
         function = check.function
         point = ca.SX.sym("z", function.size1_in(0))
         others = [ca.SX.sym(f"u{i}", function.size1_in(i)) for i in (1, 2, 3)]
-        unit = ca.vertcat(point[:4] / ca.norm_2(point[:4]), point[4:])
-        rate, storage, bound, *_ = function(unit, *others)
+        state = ca.vertcat(point[:4] / ca.norm_2(point[:4]), point[4:] * ca.DM(sizes[4:]))
+        rate, storage, bound, *_ = function(state, *others)
         gap = -rate if margin == "rate" else bound - rate
-        value = (gap + BARRIER) / storage
+        far = np.r_[np.full(4, 0.5), sizes[4:] / 2]
+        weight, largest = abs(float(function(far, *uniform)[1])) or 1.0, float(sizes[4])
+        value = (gap + BARRIER * weight * largest) / storage / largest
         results = [value, ca.densify(ca.gradient(value, point)), gap / storage]
         self._function = ca.Function("objective", [point, *others], results)
         self._point = np.empty(function.size1_in(0))
