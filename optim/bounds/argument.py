@@ -36,6 +36,28 @@ class MomentumArgument:
 
 @final
 @dataclass(frozen=True)
+class AxisArgument:
+    """A component of the momentum that free motion conserves has to be absorbed.
+
+    Attributes
+    ----------
+    measured : Measured
+        The transfer.
+    axis : int
+        0, 1 or 2: an axis about which the body is symmetric.
+    """
+
+    measured: Measured
+    axis: int
+
+    @property
+    def momenta(self) -> MomentumSet:
+        """The set in which the transfer is measured."""
+        return self.measured.momenta
+
+
+@final
+@dataclass(frozen=True)
 class StartSet:
     """Where a path is counted from.
 
@@ -119,7 +141,7 @@ class ComponentsArgument:
         return self.measured.momenta
 
 
-Argument = MomentumArgument | PathArgument | ComponentsArgument
+Argument = MomentumArgument | AxisArgument | PathArgument | ComponentsArgument
 
 
 @final

@@ -14,7 +14,7 @@ from .argument import NamedBound
 from .by_components import by_components
 from .potential.path import PathOptions
 from .prepare import Measured, Prepared
-from .proof import by_momentum, by_path
+from .proof import by_axes, by_momentum, by_path
 from .sets.gauge import invariant_set, longest_vertex
 from .sets.momentum_sets import UnitBall
 
@@ -111,7 +111,7 @@ def _by_invariant_set(prepared: Prepared, options: PathOptions) -> list[NamedBou
     norm = prepared.problem.norm
     measured = prepared.measured(invariant_set(prepared.problem.body, norm))
     names = ("momentum in the invariant set", "invariant set")
-    result = _momentum_and_path(measured, options, names)
+    result = [*_momentum_and_path(measured, options, names), *by_axes(measured)]
     if norm.is_cube and options.components:
         found = by_components(measured, options, max(bound.exact for bound in result))
         result += [] if found is None else [found]

@@ -15,7 +15,7 @@ from ...verify import checker
 from ...verify.certificates import Certificate, certificate_text
 from ...verify.exact.rounding import grid_above, grid_below, rounded_down
 from ..problem import TransferProblem
-from .argument import ComponentsArgument, MomentumArgument, NamedBound, PathArgument
+from .argument import AxisArgument, ComponentsArgument, MomentumArgument, NamedBound, PathArgument
 from .bound import LowerBound
 from .potential.path import PathBound
 from .potential.separation import Separation
@@ -40,6 +40,9 @@ def peak_certificate(problem: TransferProblem, bound: NamedBound) -> Certificate
     witness: dict[str, object] = {"rows": argument.momenta.pairs}
     if isinstance(argument, MomentumArgument):
         exact = _absorbed(argument.measured, witness)
+    elif isinstance(argument, AxisArgument):
+        exact = bound.exact * _LESS
+        witness |= {"argument": "axis", "axis": argument.axis}
     else:
         radius = argument.measured.radius[1]
         travel = _down(argument.path.travel / radius * _LESS)

@@ -6,8 +6,9 @@ from fractions import Fraction
 
 import numpy as np
 
+from ...verify.exact.ball import length
 from ..problem import TransferProblem
-from .argument import MomentumArgument, NamedBound, PathArgument, StartSet
+from .argument import AxisArgument, MomentumArgument, NamedBound, PathArgument, StartSet
 from .potential.cache import remembered
 from .potential.path import PathBound, PathOptions, path_bound
 from .potential.separation import Target
@@ -15,6 +16,7 @@ from .prepare import Measured
 from .sets.chart import Quaternion, arc_to_identity
 from .sets.momentum_sets import MomentumSet
 from .windows.coast import Coast
+from .windows.components import gyroscopic_form
 from .windows.deviation import deviation_above, growth_of_deviations
 from .windows.travel import least_peak, momentum_peak
 
@@ -23,6 +25,19 @@ def by_momentum(measured: Measured, name: str) -> NamedBound:
     """Bound from the momentum that the windows must absorb."""
     peak = momentum_peak(measured.prepared.windows, measured.start[0], measured.end)
     return NamedBound(name, peak / measured.radius[1], MomentumArgument(measured))
+
+
+def by_axes(measured: Measured) -> list[NamedBound]:
+    """Bounds from components of the momentum that free motion conserves: about axes of symmetry."""
+    prepared, found = measured.prepared, []
+    problem, total = prepared.problem, prepared.windows.total
+    for axis in range(3):
+        most = max(abs(t[axis]) for t in problem.norm.corners())
+        if total and most and not any(any(row) for row in gyroscopic_form(problem.body, axis)):
+            end = problem.terminal.rate * length(problem.body.exact_inertia[axis])[1]
+            peak = max(abs(prepared.momentum[axis]) - end, Fraction(0)) / (most * total)
+            found.append(NamedBound("momentum about an axis", peak, AxisArgument(measured, axis)))
+    return found
 
 
 def by_path(measured: Measured, options: PathOptions, name: str) -> NamedBound:

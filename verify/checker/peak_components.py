@@ -208,12 +208,19 @@ def gyroscopic_bounds(gauge: Gauge, B: Vector, floor: Fraction, place: Node) -> 
 
 def gyroscopic_bound(part: Gauge, i: int, sign: int, floor: Fraction, multipliers: Vector) -> Fraction:
     """Upper bound of sign (X x J^-1 X)_i, by multipliers of the rows and of the floor."""
-    A, j, k = part.inverse, (i + 1) % 3, (i + 2) % 3
+    G = gyroscopic_form(part.inverse, i)
+    *weights, last = multipliers
+    require(last >= 0, "multipliers must not be negative")
+    lifted = combination([Fraction(sign), last], [G, axis_matrix(i)])
+    return part.largest(lifted, weights) - last * floor**2
+
+
+def gyroscopic_form(A: Matrix, i: int) -> Matrix:
+    """Symmetric G with X'G X = (X x A X)_i."""
+    j, k = (i + 1) % 3, (i + 2) % 3
     G: Matrix = [[Fraction(0)] * 3 for _ in range(3)]
     for m in range(3):
         for row, column, value in ((j, m, A[k][m]), (k, m, -A[j][m])):
-            G[row][column] += sign * value / 2
-            G[column][row] += sign * value / 2
-    *weights, last = multipliers
-    require(last >= 0, "multipliers must not be negative")
-    return part.largest(combination([Fraction(1), last], [G, axis_matrix(i)]), weights) - last * floor**2
+            G[row][column] += value / 2
+            G[column][row] += value / 2
+    return G

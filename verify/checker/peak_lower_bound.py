@@ -8,7 +8,8 @@ from fractions import Fraction
 from .exact_numbers import require, show
 from .kinds import kind
 from .peak_coast import Departure
-from .peak_components import require_components
+from .peak_components import gyroscopic_form, require_components
+from .peak_drift import length_above
 from .peak_gauge import Gauge
 from .peak_separation import require_travel
 from .peak_transfer import Transfer
@@ -21,9 +22,14 @@ def check_peak_lower_bound(data: Node, certificate: Node) -> list[str]:
     d, witness, peak = Transfer.read(data), certificate["witness"], certificate["claim"]["peak"].number()
     require(peak > 0 and d.window.first[-1] > 0, "the peak must be positive and the window must open")
     gauge = Gauge(d.J, d.torques, [row.vector(2) for row in witness["rows"].items()])
-    arguments = {"momentum": require_momentum, "path": require_path, "components": require_components}
+    arguments = {
+        "momentum": require_momentum,
+        "axis": require_axis,
+        "path": require_path,
+        "components": require_components,
+    }
     name = witness["argument"].text()
-    require(name in arguments, "the argument is momentum, path or components")
+    require(name in arguments, "the argument is momentum, axis, path or components")
     return [
         f"no torque with {d.words} and p < {show(peak)} {d.unit} takes the start to the target:",
         *d.describe(),
@@ -38,6 +44,22 @@ def require_momentum(d: Transfer, gauge: Gauge, peak: Fraction, witness: Node) -
     start = gauge.size(d.momentum)[0]
     require(start - end >= peak * d.window.first[-1], "a torque of that peak may absorb the momentum")
     return "the momentum cannot be absorbed by less"
+
+
+def require_axis(d: Transfer, gauge: Gauge, peak: Fraction, witness: Node) -> str:
+    """A component of the momentum that free motion conserves must fall by what windows and peak allow."""
+    axis = witness["axis"].number()
+    require(
+        axis in (0, 1, 2) and d.torques is not None, "expected an axis 0, 1 or 2, and torques with corners"
+    )
+    i = int(axis)
+    still = not any(any(row) for row in gyroscopic_form(gauge.inverse, i))
+    require(still, "free motion does not conserve that component of the momentum")
+    most = max(abs(t[i]) for t in d.torques or [])
+    end = d.end_rate * length_above(d.J[i])
+    enough = abs(d.momentum[i]) - end >= peak * most * d.window.first[-1]
+    require(enough, "a torque of that peak may absorb the momentum")
+    return f"the momentum about axis {'xyz'[i]}, which free motion conserves, cannot be absorbed by less"
 
 
 def require_path(d: Transfer, gauge: Gauge, peak: Fraction, witness: Node) -> str:

@@ -14,8 +14,9 @@ from .exact_numbers import Matrix, Vector, require
 # the torques of one-sided thrusters. Proof. H = J w obeys H' = H x J^-1 H + torque. |H|^2 and H'J^-1 H
 # are conserved in free motion, so every row M = a I + b J^-1 >= 0 gives a size sqrt(H'M H/L), L the
 # largest t'M t over T, that changes at most p w; so does the largest of them, the gauge N of
-# K = {H'M_k H <= L_k}. Three arguments follow.
+# K = {H'M_k H <= L_k}. Four arguments follow.
 #   momentum    N(start) - N(end) <= p int w.
+#   axis        the same of one component, where (H x J^-1 H)_i = 0 for every H: an axis of symmetry.
 #   path        travel = int N dt <= N0 s + Nf (tf - s) + p A(s) for any instant s, and it must be at
 #               least D: by the rotation angle, or by a potential phi of the modified Rodrigues vector
 #               x of m^-1 q with max over K of |phi'| <= rate wherever a path of travel below D can

@@ -25,9 +25,13 @@ QUICK = PathOptions(degree=3, tolerance=1e-2)
 """Weak potentials: the proofs are the same, and short."""
 
 
+ROUND = RigidBody.from_rows([[2, 0, 0], [0, 2, 0], [0, 0, 3]])
+SPINNING = (Fraction("0.01"), Fraction(0), Fraction(2))
+
+
 def problem(**options):
     attitude = quaternion_from_axis_angle((1, 1, 1), math.radians(70))
-    return TransferProblem(body=J1, window=WINDOW, attitude=attitude, **options)
+    return TransferProblem(**{"body": J1, "window": WINDOW, "attitude": attitude} | options)
 
 
 CASES = {
@@ -40,6 +44,9 @@ CASES = {
     ),
     "path after a coast": problem(rate=AWAY),
     "path in the invariant set after a coast": problem(norm=THRUSTERS, rate=AWAY),
+    "momentum about an axis": problem(
+        norm=LARGEST_COMPONENT, body=ROUND, rate=SPINNING, terminal=Terminal(rate=Fraction("0.01"))
+    ),
     "momentum": problem(norm=LARGEST_COMPONENT, rate=(Fraction(-1), Fraction(2), Fraction(0))),
 }
 
@@ -100,6 +107,7 @@ def test_each_argument_occurs(texts):
         "components to a slow end": "components",
         "path after a coast": "path",
         "path in the invariant set after a coast": "path",
+        "momentum about an axis": "axis",
         "momentum": "momentum",
     }
     coasted = [key for key in CASES if "coast" in key or "slow" in key]
@@ -118,6 +126,16 @@ PROOF = (*WITNESS, "separations", 0)
 SHARED = [
     (("certificates", 0, "claim", "peak"), "1.001"),
     (("data", "inertia", 0, 0), "0.9"),
+]
+ABOUT_AN_AXIS = [
+    (("certificates", 0, "claim", "peak"), "1.001"),
+    (("data", "inertia", 0, 0), "0.9"),  # no longer round
+    (("data", "inertia", 2, 2), "0.9"),
+    (("data", "transfer", "rate", 2), "0.99"),
+    (("data", "transfer", "tolerance", "rate"), "1.1"),
+    (("data", "transfer", "window", "knots", 3), "1.01"),
+    ((*WITNESS, "axis"), "0"),
+    ((*WITNESS, "axis"), "1.5"),
 ]
 TRAVELLED = [
     *SHARED,
@@ -180,7 +198,8 @@ SLOW_END = [
     + [("path in the invariant set after a coast", *one) for one in COASTED]
     + [("path in the invariant set after a coast", (*WITNESS, "coast", "growth", 1), "0.99")]
     + [("momentum", *one) for one in SHARED]
-    + [("momentum", ("data", "transfer", "rate", 1), "0.9")],
+    + [("momentum", ("data", "transfer", "rate", 1), "0.9")]
+    + [("momentum about an axis", *one) for one in ABOUT_AN_AXIS],
 )
 def test_any_change_that_matters_is_refused(texts, key, path, factor):
     assert not valid(edited(texts[key], *path, change=by(factor)))
