@@ -19,6 +19,7 @@ import pytest
 from intermit.cli.app import run
 from intermit.scenario.laws import LawChoice
 from intermit.verify import checker
+from intermit.verify.certificates import certificate_text
 from intermit.verify.filter.answer import answer
 from intermit.verify.verdict import Verdict
 from problems import J1, paper_schedule
@@ -220,6 +221,42 @@ def test_a_part_cannot_replace_what_the_checker_has(folder):
     with pytest.raises(ValueError, match="brings neither"):
         checker.read_part("x = 1", "x.py")
     assert alone("--with", "absent.py", "c.json").returncode == 2
+
+
+FORGERIES = {
+    "shrinks 3 % faster": ("claim.ratio", "0.97"),
+    "settles 3 % sooner": ("claim.settling.time", "0.97"),
+    "3 % less torque": ("claim.torque", "0.97"),
+    "another gain": ("data.parameters.kappa", "1.03"),
+    "less damping": ("data.parameters.delta", "0.97"),
+    "a larger set": ("data.initial_set.max_angle_deg", "1.03"),
+    "a lighter body": ("data.inertia.2.2", "0.9"),
+    "a tighter bound": ("witness.bins.0.steps.3.bounds.s.2", "0.5"),
+    "a faster decay": ("witness.bins.0.tail.ratio", "0.97"),
+}
+
+
+@pytest.mark.parametrize(("path", "factor"), FORGERIES.values(), ids=FORGERIES)
+def test_a_forged_certificate_is_refused(path, factor, certified):
+    part, file = checker.read_part(PART.read_text(), PART.name), json.loads(certified)
+    assert all(found.valid for found in checker.check_text(json.dumps(file), (part,)))
+    (entry,) = file["parts"]
+    place = {**entry["certificates"][0], "data": entry["data"]}
+    *road, last = (int(step) if step.isdigit() else step for step in path.split("."))
+    for step in road:
+        place = place[step]
+    place[last] = str(F(place[last]) * F(factor))
+    assert not all(found.valid for found in checker.check_text(json.dumps(file), (part,)))
+
+
+@pytest.fixture(scope="module")
+def certified(tmp_path_factory):
+    """The certificate's text."""
+    folder = tmp_path_factory.mktemp("law")
+    shutil.copy(LAW, folder)
+    shutil.copy(PART, folder)
+    (evidence, *_) = claims_of(folder).claims[0].evidence
+    return certificate_text([evidence.details["certificate"]])
 
 
 @pytest.mark.slow
