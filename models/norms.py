@@ -15,13 +15,14 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, reduce
 from itertools import combinations, product
-from typing import Any, Literal, final
+from typing import Any, Literal, cast, final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from .norm_blocks import Ball, Block, Box
 from .types import Array
+from .zonotope import zonotope_vertices
 
 Axis = tuple[Fraction, Fraction, Fraction]
 BODY_AXES: tuple[Axis, ...] = tuple(
@@ -242,13 +243,16 @@ class Norm:
         Raises
         ------
         ValueError
-            If a ball has no corners (three controls or more), or there are too many.
+            If a ball has no corners (three controls or more).
         """
+        if self._is_polytope:  # every control from its low end up: a zonotope
+            lows = [
+                Fraction(0 if block.is_one_sided else -1) for block in self.blocks for _ in range(block.size)
+            ]
+            spans = [tuple((1 - low) * x for x in axis) for low, axis in zip(lows, self.axes, strict=True)]
+            x, y, z = self._torque(lows)
+            return [(x + a, y + b, z + c) for a, b, c in zonotope_vertices(cast("list[Axis]", spans))]
         of_blocks = [block.corners() for block in self.blocks]
-        if np.prod([float(len(found)) for found in of_blocks]) > MAX_CORNERS:
-            raise ValueError(
-                f"lower bounds take at most {MAX_CORNERS} corners (12 thrusters), received {self.name}"
-            )
         return [self._torque([x for part in choice for x in part]) for choice in product(*of_blocks)]
 
     def _torque(self, control: Sequence[Fraction]) -> Axis:
@@ -257,7 +261,6 @@ class Norm:
         return x, y, z
 
 
-MAX_CORNERS = 2**12
 EUCLIDEAN = Norm("euclidean", "Euclidean", (Ball(3),))
 """|torque| <= p: a gimballed or well-spread set of thrusters."""
 LARGEST_COMPONENT = Norm("component", "largest component", (Box(3),))

@@ -24,6 +24,8 @@ from .sets.polynomials import exponents
 from .windows.travel import peak_at
 
 KIND = "peak-lower-bound"
+MAX_THRUSTERS = 12
+"""Thrusters that the checker takes: it tries every choice of them."""
 _BITS = 120
 _LESS = 1 - Fraction(1, 2**64)
 """The checker rounds its square roots: a travel is claimed a trifle smaller."""
@@ -85,8 +87,8 @@ def transfer_data(problem: TransferProblem) -> dict[str, object]:
 
 def has_certificate(norm: Norm) -> bool:
     """Whether the certificate's format can say what limits the torque."""
-    only_thrusters = all(block.is_one_sided for block in norm.blocks)
-    return norm.is_ball or norm.is_cube or only_thrusters
+    thrusters = all(block.is_one_sided for block in norm.blocks) and len(norm.axes) <= MAX_THRUSTERS
+    return norm.is_ball or norm.is_cube or thrusters
 
 
 def _torque(norm: Norm) -> dict[str, object]:

@@ -92,7 +92,7 @@ def bound_claim(problem: TransferProblem, bound: LowerBound, nominal: str = "") 
 
     `nominal`: which body it speaks of, in words (see `nominal_words`).
     """
-    from ...optim.bounds.certificate import has_certificate, largest_certificate
+    from ...optim.bounds.certificate import MAX_THRUSTERS, has_certificate, largest_certificate
 
     norm, unit = problem.norm.name, problem.norm.unit
     found = largest_certificate(problem, bound)
@@ -103,11 +103,12 @@ def bound_claim(problem: TransferProblem, bound: LowerBound, nominal: str = "") 
             f"Some peak above 0 {unit} is needed for the transfer.",
             Verdict.UNDECIDED,
             reason="no bound above 0 was found: the start's momentum may carry the turn"
-            if has_certificate(problem.norm)
-            else f"no certificate can be written for a limit by {norm}",
+            if has_certificate(problem.norm) or not bound.value > 0
+            else f"the bound {below(bound.value)} {unit} ({bound.name}) was found, but no certificate can "
+            f"speak of {norm}",
             next_step="give a later start, or a start at rest"
-            if has_certificate(problem.norm)
-            else "measure the torque by its length, its components or the thrusters' forces",
+            if has_certificate(problem.norm) or not bound.value > 0
+            else f"limit the torque's length, its components, or at most {MAX_THRUSTERS} one-sided thrusters",
             source=SOURCE,
             counted=False,
         )
