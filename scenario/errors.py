@@ -37,9 +37,18 @@ def one_line(text: str) -> str:
     return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
 
 
+def _spelled(value: object) -> str:
+    """A value as TOML writes it."""
+    if isinstance(value, (list, tuple)):
+        return f"[{', '.join(map(_spelled, value))}]"
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{key} = {_spelled(part)}" for key, part in value.items()) + " }"
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
 def quote(value: object) -> str:
     """Return a user's own value as it is repeated in a message: one line, not endless."""
-    text = value if isinstance(value, str) else str(value).lower() if isinstance(value, bool) else str(value)
+    text = _spelled(value)
     shown = one_line(text)
     if len(shown) > MAX_QUOTE:
         shown = shown[: MAX_QUOTE - 3] + "..."

@@ -147,7 +147,9 @@ def _choice(table: LawTable, file: ScenarioFile, document: Document, key: str) -
         return _user_choice(table, document, key)
     if table.type not in LAWS:
         names = ", ".join(f'"{name}"' for name in (*LAWS, USER))
-        raise ScenarioError(f"{where}.type", f"expected one of {names}, received {quote(table.type)}")
+        near = get_close_matches(table.type.replace("_", "-").lower(), [*LAWS, USER], n=1, cutoff=0.7)
+        hint = f' (did you mean "{near[0]}"?)' if near else ""
+        raise ScenarioError(f"{where}.type", f"expected one of {names}, received {quote(table.type)}{hint}")
     for stray, unwanted in (("file", table.file), ("class", table.class_), ("parameters", table.parameters)):
         if unwanted is not None:
             raise ScenarioError(f"{where}.{stray}", 'belongs to type = "user": remove it')

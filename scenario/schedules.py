@@ -244,7 +244,10 @@ def _check_order(
             )
         if window.off <= window.on:
             off, on = apart(window.off, window.on)
-            raise ScenarioError(locate(i), f"closes ({off} s) before it opens ({on} s)")
+            order = f"closes ({off} s) before it opens ({on} s)"
+            if window.off == window.on:
+                order = f"is empty: it opens and closes at {on} s"
+            raise ScenarioError(locate(i), order)
         if i and window.on < windows[i - 1].off:
             on, off = apart(window.on, windows[i - 1].off)
             raise ScenarioError(

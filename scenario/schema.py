@@ -12,6 +12,7 @@ from typing import Any, Literal
 from pydantic import ConfigDict, Field, StrictBool, field_validator
 
 from ..models.norms import NormWord
+from .errors import quote
 from .exact import Count, Exact, Matrix, NotNegative, Positive, PositiveSine, Text, Vector, exact
 from .questions import CheckTable, CompareTable, OptimumTable, ReportTable, StudyTable, TuneTable
 from .table import Table
@@ -39,6 +40,17 @@ class SpacecraftTable(Table):
     inertia_moments: Vector | None = None
     inertia_products: ProductsTable | None = None
     inertia_tolerance: Any = None
+
+    @field_validator("inertia", mode="before")
+    @classmethod
+    def _rows(cls, value: Any) -> Any:
+        shaped = isinstance(value, list) and all(isinstance(row, list) and len(row) == 3 for row in value)
+        if not shaped or len(value) != 3:
+            raise ValueError(
+                "expected three rows of three numbers, [[3, 0, 0], [0, 2.5, 0], [0, 0, 2]] for instance "
+                f"(or inertia_moments with inertia_products), received {quote(value)}"
+            )
+        return value
 
     @field_validator("inertia_tolerance")
     @classmethod

@@ -29,6 +29,32 @@ THRUST = dict.fromkeys(
 )
 """Units that thrust may be given in: only its ratio to full thrust, in the same unit, counts."""
 
+OF_KEYS = (
+    dict.fromkeys(("angle_deg", "max_angle_deg"), "deg")
+    | dict.fromkeys(("rate", "max_rate", "rate_tolerance"), "rad/s")
+    | dict.fromkeys(
+        (
+            "period", "on", "on_time", "ramp_up", "ramp_down", "thruster_rise", "thruster_fall", "time",
+            "horizon", "output_step", "final_time", "settle", "pe_window", "R0",
+        ),
+        "s",
+    )
+    | dict.fromkeys(("torque", "torque_limit"), "N m")
+    | dict.fromkeys(("inertia", "inertia_moments", "inertia_tolerance"), "kg m^2")
+    | {"lambda": "1/s", "k0": "1/s"}
+)  # fmt: skip
+"""The unit of a scenario's keys, for messages about keys and values that name another."""
+_SUFFIX = re.compile(
+    r"_(deg|rad|degrees|radians|rad_?p?_?s|deg_?p?_?s|rpm|ms|us|s|sec|seconds|min|h|nm|mnm|n_?m|kgm2|kg_m2)$",
+    re.IGNORECASE,
+)
+
+
+def bare_key(key: str) -> str:
+    """A key without the unit that it names: "rate_deg_s" is "rate"."""
+    return _SUFFIX.sub("", key)
+
+
 SPOKEN = "ns, us, ms, s, min, h, d"
 """The units of time as messages name them."""
 SUBJECTS = frozenset({"window", "burn", "firing", "fire", "valve", "thruster", "pulse", "jet"})

@@ -11,6 +11,7 @@ from .document import Document
 from .errors import ScenarioError, quote
 from .schema import ScenarioFile
 from .table import Table
+from .units import OF_KEYS, bare_key
 
 
 def validate(document: Document) -> ScenarioFile:
@@ -56,7 +57,9 @@ def _sentence(problem: dict[str, Any], location: tuple[int | str, ...]) -> str:
     if kind == "missing":
         return "required, but missing"
     if kind == "value_error":
-        return str(problem["ctx"]["error"])
+        key = next((part for part in reversed(location) if isinstance(part, str)), "")
+        alone = isinstance(problem["input"], str) and key in OF_KEYS
+        return str(problem["ctx"]["error"]) + (f": write it alone, in {OF_KEYS[key]}" if alone else "")
     if kind in {"tuple_type", "list_type"}:
         return f"expected a list, received {quote(problem['input'])}"
     if kind in {"model_type", "dict_type", "model_attributes_type"}:
@@ -86,8 +89,15 @@ def _suggestion(location: tuple[int | str, ...]) -> str:
         if model is None:
             return ""
     known = [field.alias or name for name, field in model.model_fields.items()]
-    near = get_close_matches(str(location[-1]), known, n=1)
-    return f" (did you mean '{near[0]}'?)" if near else f" (known: {', '.join(known)})"
+    wanted = str(location[-1])
+    base = bare_key(wanted)
+    near = [name for name in (base, f"{base}_deg") if base != wanted and name in known]
+    bare = {bare_key(name): name for name in known}
+    near = near or [bare[name] for name in get_close_matches(base, bare, n=1)]
+    if not near:
+        return f" (known: {', '.join(known)})"
+    unit = f", in {OF_KEYS[near[0]]}" if near[0] in OF_KEYS else ""
+    return f" (did you mean '{near[0]}'{unit}?)"
 
 
 def table_of(annotation: Any) -> type[Table] | None:

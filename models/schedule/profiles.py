@@ -118,7 +118,10 @@ def check_windows(windows: Sequence[Window], period: Fraction | None) -> None:
             raise ValueError(f"schedule window {number} opens at {float(window.on):g} s: times start at 0 s")
         if window.off <= window.on:
             off, on = apart(window.off, window.on)
-            raise ValueError(f"schedule window {number} closes ({off} s) before it opens ({on} s)")
+            order = f"closes ({off} s) before it opens ({on} s)"
+            if window.off == window.on:
+                order = f"is empty: it opens and closes at {on} s"
+            raise ValueError(f"schedule window {number} {order}")
         if previous is not None and window.on < previous.off:
             off, on = apart(previous.off, window.on)
             raise ValueError(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
+from difflib import get_close_matches
 
 from ...scenario import Scenario, ScenarioError
 from ...verify.claim_table import CLAIM_KEYS
@@ -23,9 +24,10 @@ def counted_keys(scenario: Scenario) -> frozenset[str]:
         return frozenset(key for key, entry in CLAIM_KEYS.items() if entry.counts)
     for key in listed:
         if key not in CLAIM_KEYS:
+            near = get_close_matches(key, CLAIM_KEYS, n=1)
+            hint = f"did you mean '{near[0]}'?" if near else f"keys: {', '.join(CLAIM_KEYS)}"
             raise ScenarioError(
-                f"{scenario.path.name}: check.claims",
-                f"no claim has the key '{key}' (keys: {', '.join(CLAIM_KEYS)})",
+                f"{scenario.path.name}: check.claims", f"no claim has the key '{key}' ({hint})"
             )
     return frozenset(listed)
 

@@ -81,7 +81,30 @@ BAD_TABLES = {
     ),
     "inertia of two rows": (
         {"spacecraft": "inertia = [[1, 0, 0], [0, 1, 0]]"},
-        "scenario.toml: spacecraft.inertia[3]: required, but missing",
+        "scenario.toml: spacecraft.inertia: expected three rows of three numbers, [[3, 0, 0], [0, 2.5, 0], "
+        "[0, 0, 2]] for instance (or inertia_moments with inertia_products), received [[1, 0, 0], [0, 1, 0]]",
+    ),
+    "a period of no length": (
+        {"schedule": "windows = [[0, 1], [2, 2]]"},
+        "scenario.toml: schedule.windows[2]: is empty: it opens and closes at 2 s",
+    ),
+    "a key with another unit": (
+        {"initial": "axis = [1, 1, 1]\nangle_deg = 60\nrate_deg_s = [1, 0, 0]"},
+        "scenario.toml: initial.rate_deg_s: unknown key (did you mean 'rate', in rad/s?)",
+    ),
+    "an angle in radians": (
+        {"initial": "axis = [1, 1, 1]\nangle_rad = 1"},
+        "scenario.toml: initial.angle_rad: unknown key (did you mean 'angle_deg', in deg?)",
+    ),
+    "a number with its unit": (
+        {"schedule": 'period = "8 s"\non_time = 3'},
+        "scenario.toml: schedule.period: expected a number, received '8 s': write it alone, in s",
+    ),
+    "a law misspelt": (
+        {"law": 'type = "persistence_filter"\nlambda = 1'},
+        'scenario.toml: law[1].type: expected one of "adaptive-scaling", "adaptive-scaling-as-printed", '
+        '"persistence-filter", "persistence-filter-as-printed", "quaternion-pd", "user", received '
+        "'persistence_filter' (did you mean \"persistence-filter\"?)",
     ),
     "no inertia": (
         {"spacecraft": ""},
@@ -169,7 +192,7 @@ BAD_TABLES = {
     ),
     "a text where a number belongs": (
         {"law": 'type = "persistence-filter"\nlambda = "fast"\nR0 = 1'},
-        "scenario.toml: law[1].lambda: expected a number, received 'fast'",
+        "scenario.toml: law[1].lambda: expected a number, received 'fast': write it alone, in 1/s",
     ),
     "true where a number belongs": (
         {"law": 'type = "persistence-filter"\nlambda = true\nR0 = 1'},
@@ -181,7 +204,7 @@ BAD_TABLES = {
     ),
     "an unknown key": (
         {"spacecraft": INERTIA.format(3, 3, 2) + "\ninertai = 3"},
-        "scenario.toml: spacecraft.inertai: unknown key (did you mean 'inertia'?)",
+        "scenario.toml: spacecraft.inertai: unknown key (did you mean 'inertia', in kg m^2?)",
     ),
     "an unknown table": (
         {"tolerances": "attitude = 0.1"},
