@@ -145,3 +145,15 @@ def test_an_inertia_tolerance_lowers_the_floor_or_leaves_it():
     exact, loose = answer(QUESTION), answer(missions.other(QUESTION, inertia_tolerance=wide))
     assert loose.floor.value < exact.floor.value
     assert by_key(loose)["filter.floor"].verdict is Verdict.PROVED
+
+
+@pytest.mark.parametrize(("lead", "known"), [(20, True), (60, False)])
+def test_a_search_tells_no_floor_that_its_runs_do_not_know(lead, known):
+    """exp(-0.525 lead) is 2.8e-5 or 2e-14, beside an absolute tolerance of 1e-10."""
+    late = build_schedule([Window(F(lead), F(lead + 3))], Hermite())
+    asked = missions.other(QUESTION, schedule=late)
+    found = answer(replace(asked, search=Search(samples=8, rounds=0)))
+    assert (found.worst is not None) == known
+    if known:
+        # the rise takes a moment to outweigh the decay
+        assert 0.9 < found.worst.value / np.exp(-0.525 * lead) < 1
