@@ -40,15 +40,19 @@ def remedy(error: BaseException) -> str:
     return next(found, "")
 
 
-def complaint(error: BaseException, path: Path, where: str, name: str) -> ScenarioError:
-    """Say in one line what a user's code did, where, and what cures it."""
+def complaint(error: BaseException, path: Path, where: str, name: str, control: str = "") -> ScenarioError:
+    """Say in one line what a user's code did, where, and what cures it.
+
+    `control`: the line of the law's `control`, named where what it returned is at fault.
+    """
     if isinstance(error, SystemExit):
         said = f"it asked the program to end (sys.exit({error.code!r}))"
         cure = "raise ValueError with a reason instead"
     else:
         text = _gist(str(error))
         said, cure = f"{type(error).__name__}: {text}" if text else type(error).__name__, remedy(error)
-    place = f"{where}: {path.name}{line_of(error, path)}"
+    line = line_of(error, path) or (control if str(error).startswith("law ") else "")
+    place = f"{where}: {path.name}{line}"
     return ScenarioError(place, f"{name}: {said}" + (f"; {cure}" if cure else ""))
 
 
@@ -59,7 +63,7 @@ def _gist(message: str) -> str:
 
 
 @contextmanager
-def user_code(path: Path, where: str, name: str) -> Iterator[None]:
+def user_code(path: Path, where: str, name: str, control: str = "") -> Iterator[None]:
     """Run code of the user's file within: SystemExit and every exception become a `ScenarioError`.
 
     What the code prints goes to standard error. An interrupt by the user passes through; one that the
@@ -75,7 +79,7 @@ def user_code(path: Path, where: str, name: str) -> Iterator[None]:
             raise
         raise complaint(error, path, where, name) from error
     except BaseException as error:  # whatever the user's own code does, sys.exit included
-        raise complaint(error, path, where, name) from error
+        raise complaint(error, path, where, name, control) from error
 
 
 @contextmanager
@@ -143,6 +147,12 @@ def _wrapped(function: Callable[..., Any], path: Path, where: str, name: str) ->
             return function(*arguments, **keywords)
 
     return run
+
+
+def line_of_control(law_class: type, path: Path) -> str:
+    """Return " line N" of a class's `control` in the user's file, or an empty text."""
+    code = getattr(inspect.unwrap(getattr(law_class, "control", len)), "__code__", None)
+    return f" line {code.co_firstlineno}" if code is not None and code.co_filename == str(path) else ""
 
 
 def line_of(error: BaseException, path: Path) -> str:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from .errors import ScenarioError, quote
 from .files import read_text
-from .user_code import guard_class, user_code
+from .user_code import guard_class, line_of_control, user_code
 
 if TYPE_CHECKING:
     from ..models.closed_loop import ClosedLoop
@@ -77,7 +77,7 @@ def require_sound_law(law: Law, path: Path, where: str) -> None:
     called: object = law.name  # a class of the user's may say anything
     if not isinstance(called, str) or not called.strip():
         raise ScenarioError(f"{where}: {path.name}", f"{name}.name must be a text, received {called!r}")
-    with user_code(path, where, name):
+    with user_code(path, where, name, line_of_control(type(law), path)):
         loop = close_loop(law)
     with user_code(path, where, f"{name}.storage"):
         _require_storage(loop)

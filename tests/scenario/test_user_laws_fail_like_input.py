@@ -93,6 +93,11 @@ def test_a_wrong_law_is_bad_input_in_one_line(attempt, case):
     assert words in line
 
 
+@pytest.mark.parametrize("case", ["list", "none", "scalar", "stray symbol"])
+def test_what_control_returns_is_named_with_its_line(attempt, case):
+    assert "own.py line 19: Own" in attempt(WRONG[case][0])[1].err
+
+
 @pytest.mark.parametrize(
     "command",
     [["certify", "-o", "never.json"], ["compare"], ["tune", "--settle", "10"], ["check", "--json", "-"]],
