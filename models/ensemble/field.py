@@ -13,6 +13,7 @@ from ..closed_loop import ClosedLoop, Saturation, close_loop
 from ..laws import Law
 from ..lowering import ArrayFunction, shared, walk
 from ..lowering.jumps import jumps
+from ..simulation.coasting import PLANT
 from ..simulation.phases import Phase, phase_arguments
 from ..types import Array
 from .step import Index, Mask
@@ -46,10 +47,11 @@ def representative_loop(structure: Structure) -> ClosedLoop:
     return close_loop(structure.law, structure.saturation)
 
 
-def field_function(structure: Structure, degree: int, *, coasting: bool) -> Any:
+def field_function(structure: Structure, degree: int, *, coasting: bool, held: bool = False) -> Any:
     """Right-hand side (tau, state, coefficients, parameters, body) as a CasADi function.
 
-    `coasting` is for phases without torque: g and g' are exact zeros and their terms are gone.
+    `coasting` is for phases without torque: g and g' are exact zeros and their terms are gone. The
+    controller states are `held` where what they do meanwhile is known exactly.
     """
     import casadi as ca
 
@@ -58,16 +60,18 @@ def field_function(structure: Structure, degree: int, *, coasting: bool) -> Any:
     if coasting:
         time[0], time[1] = 0, 0
     (rate,) = ca.substitute([loop.state_rate], [loop.time], [time])
+    if coasting and held:
+        rate[PLANT:] = 0
     arguments = [tau, loop.state, coefficients, loop.parameters, loop.body]
     return ca.Function("stacked_field", arguments, [ca.densify(ca.SX(rate))])
 
 
 @lru_cache(maxsize=64)
 def lowered_field(
-    structure: Structure, degree: int, uniform: frozenset[int], *, coasting: bool
+    structure: Structure, degree: int, uniform: frozenset[int], *, coasting: bool, held: bool
 ) -> ArrayFunction:
     """Right-hand side as an array function."""
-    program = shared(walk(field_function(structure, degree, coasting=coasting)))
+    program = shared(walk(field_function(structure, degree, coasting=coasting, held=held)))
     return ArrayFunction(program, uniform=sorted({COEFFICIENTS} | uniform))
 
 
@@ -83,15 +87,20 @@ class StackedField:
     body : (12, N), or (12,) if all runs share them.
     degree : int
         Largest degree of the signals.
+    held : bool
+        Whether coasts leave the controller states alone.
     """
 
-    def __init__(self, structure: Structure, parameters: Array, body: Array, *, degree: int) -> None:
+    def __init__(
+        self, structure: Structure, parameters: Array, body: Array, *, degree: int, held: bool = False
+    ) -> None:
         self._all = (parameters, body)
         self._degree = degree
         both = ((PARAMETERS, parameters), (BODY, body))
         uniform = frozenset(i for i, values in both if values.ndim == 1)
         self._functions = [
-            lowered_field(structure, degree, uniform, coasting=coasting) for coasting in (False, True)
+            lowered_field(structure, degree, uniform, coasting=coasting, held=held)
+            for coasting in (False, True)
         ]
         self._origin = 0.0
 

@@ -41,6 +41,8 @@ class Step:
     states : (m, n) at the start
     coefficients : (m, q, n): x(t) = states + sum_q basis_q((t - start)/length) coefficients_q
     basis : the q basis functions
+    decay : (m, c), 1/s, where the last c states are multiplied by exp(-decay (t - since)); None without
+    since : s
     """
 
     runs: Index
@@ -50,12 +52,17 @@ class Step:
     states: Array
     coefficients: Array
     basis: Basis
+    decay: Array | None = None
+    since: float = 0.0
 
     def at(self, x: Array) -> Array:
         """States (m, p, n) at the fractions x (m, p) or (p,) of the steps."""
         fractions = np.broadcast_to(x, (self.runs.size, x.shape[-1]))
         values: Array = np.matmul(self.basis(fractions, self.coefficients.shape[1]), self.coefficients)
         values += self.states[:, None, :]
+        if self.decay is not None:
+            passed = self.start[:, None] - self.since + fractions * self.length[:, None]
+            values[:, :, -self.decay.shape[1] :] *= np.exp(-self.decay[:, None, :] * passed[:, :, None])
         return values
 
     def only(self, chosen: Mask | Index) -> Step:
@@ -68,6 +75,7 @@ class Step:
             length=self.length[chosen],
             states=self.states[chosen],
             coefficients=self.coefficients[chosen],
+            decay=None if self.decay is None else self.decay[chosen],
         )
 
 

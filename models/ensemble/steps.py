@@ -104,12 +104,22 @@ class Stack:
     start, end : the phase, s.
     tolerances : Tolerances
         Of every run.
+    atol : (n, m), optional
+        Absolute tolerances of each state of each run, in place of the common one.
     """
 
     def __init__(
-        self, field: Field, runs: Index, y: Array, start: float, end: float, tolerances: Tolerances
+        self,
+        field: Field,
+        runs: Index,
+        y: Array,
+        start: float,
+        end: float,
+        tolerances: Tolerances,
+        atol: Array | None = None,
     ) -> None:
         self.field, self.runs, self.y, self.end, self.tolerances = field, runs, y, end, tolerances
+        self._atol = np.full(y.shape, tolerances.atol) if atol is None else atol
         self.t = np.full(runs.size, start)
         self.f = np.empty_like(y)
         self.evaluations = np.zeros(runs.size, dtype=np.int64)
@@ -124,7 +134,7 @@ class Stack:
 
     def _first_step(self, longest: float) -> Array:
         """First steps (Hairer, Norsett & Wanner, II.4)."""
-        scale = self.tolerances.atol + np.abs(self.y) * self.tolerances.rtol
+        scale = self._atol + np.abs(self.y) * self.tolerances.rtol
         d0, d1 = _norm(self.y / scale), _norm(self.f / scale)
         h0 = np.where((d0 < 1e-5) | (d1 < 1e-5), 1e-6, 0.01 * d0 / np.where(d1 > 0, d1, 1.0))
         h0 = np.minimum(np.where(np.isfinite(h0), h0, 1e-6), longest)
@@ -164,7 +174,7 @@ class Stack:
 
     def _error(self, flat: Array, new: Array, h: Array) -> Array:
         """Error norm of each run, inf where a state is no longer a number."""
-        scale = self.tolerances.atol + np.maximum(np.abs(self.y), np.abs(new)) * self.tolerances.rtol
+        scale = self._atol + np.maximum(np.abs(self.y), np.abs(new)) * self.tolerances.rtol
         estimates = np.dot(TABLEAU.errors, flat).reshape(2, *new.shape) / scale
         fifth, third = np.einsum("enm,enm->em", estimates, estimates)
         denominator = np.sqrt((fifth + 0.01 * third) * new.shape[0])
@@ -218,7 +228,7 @@ class Stack:
     def keep(self, kept: Mask) -> None:
         """Drop the other runs from the stack."""
         self.runs, self.t, self.h = self.runs[kept], self.t[kept], self.h[kept]
-        self.y, self.f = self.y[:, kept], self.f[:, kept]
+        self.y, self.f, self._atol = self.y[:, kept], self.f[:, kept], self._atol[:, kept]
         self._rejected, self.evaluations = self._rejected[kept], self.evaluations[kept]
         self.field.keep(kept)
 

@@ -14,9 +14,10 @@ import numpy as np
 
 from ..lowering import shared, walk
 from ..lowering.heyoka_table import heyoka_expressions, load_heyoka
+from ..simulation.coasting import coasting_decays
 from ..simulation.phases import Phase, signal_degree
 from ..types import Array
-from .field import Structure, field_function, representative_loop
+from .field import StackedField, Structure, field_function, representative_loop
 from .grid import GridObserver
 from .runs import Runs
 from .stacked import Ends, reset_states
@@ -42,8 +43,10 @@ def integrate_taylor(
     Raises
     ------
     TaylorError
-        If a run cannot be carried to the end.
+        If a run cannot be carried to the end; at once for a law that jumps, which may chatter, and where a
+        state decays in a coast to where only the default backend knows it.
     """
+    _require_fitting(runs, phases)
     degree, tolerance = signal_degree(phases), min(tolerances.rtol, tolerances.atol * 100)
     integrators = {
         coasting: copy.deepcopy(_integrator(runs.structure, degree, tolerance, coasting=coasting))
@@ -72,6 +75,20 @@ def _passage(interval: Interval, observers: tuple[Observer, ...], count: int, la
     if len(observers) == 1 and isinstance(observers[0], GridObserver):
         return OnGrid(interval, observers[0], lanes)
     return EveryStep(interval, observers, count)
+
+
+FORGOTTEN = 10.0
+"""Decay, as an exponent, of a state through one coast above which it is left to the default backend."""
+
+
+def _require_fitting(runs: Runs, phases: tuple[Phase, ...]) -> None:
+    parameters = runs.parameters if runs.parameters.ndim == 2 else runs.parameters[:, None]
+    decay = coasting_decays(representative_loop(runs.structure), parameters)
+    longest = max((float(p.end - p.start) for p in phases if p.is_torque_free), default=0.0)
+    if decay is not None and decay.size and decay.max() * longest > FORGOTTEN:
+        raise TaylorError("a controller state decays too far in a coast")
+    if StackedField(runs.structure, runs.parameters, runs.body, degree=signal_degree(phases)).jumps:
+        raise TaylorError("the law jumps")
 
 
 @final

@@ -42,6 +42,12 @@ def coasting_decay(loop: ClosedLoop) -> Array | None:
     return np.asarray(values, dtype=float).ravel()
 
 
+def coasting_decays(loop: ClosedLoop, parameters: Array) -> Array | None:
+    """The same (m, N) for N sets of parameters (p, N)."""
+    function = _decay_function(loop)
+    return None if function is None else np.asarray(function(parameters), dtype=float)
+
+
 @lru_cache(maxsize=64)
 def _decay_function(loop: ClosedLoop) -> Any:
     """CasADi function parameters -> decay rates (m,); None if a controller state is not of that kind."""

@@ -24,8 +24,6 @@ from .sets import InitialSet
 
 SEARCHING = Tolerances(rtol=1e-8, atol=1e-10, phase_evaluations=5000)
 """The least R found is an estimate: eight digits are more than enough; a run too stiff is left out."""
-KNOWN = 1000
-"""An R below so many absolute tolerances of the search is its error, not the filter's state."""
 INSIDE = 1 - 1e-9
 """Keeps sampled states inside the set whatever the rounding."""
 
@@ -88,8 +86,8 @@ def find_worst(
 ) -> WorstFound | None:
     """Search an initial set for the start with the least R over [0, horizon].
 
-    None where no start that was tried lies in the set (two bounds on the rate may leave little of it), and
-    where R decays so far between windows that the search's runs no longer know it.
+    None where no start that was tried lies in the set (two bounds on the rate may leave little of it), or
+    where no run gets to the horizon.
 
     Parameters
     ----------
@@ -126,7 +124,7 @@ def find_worst(
         times = np.append(times, when)
         radius *= 0.5
     worst = int(np.argmin(values))
-    if not KNOWN * SEARCHING.atol <= values[worst] < np.inf:
+    if not np.isfinite(values[worst]):
         return None
     state = shape.states(points[worst : worst + 1])[0]
     return WorstFound(

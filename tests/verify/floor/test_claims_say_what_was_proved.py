@@ -147,9 +147,9 @@ def test_an_inertia_tolerance_lowers_the_floor_or_leaves_it():
     assert by_key(loose)["filter.floor"].verdict is Verdict.PROVED
 
 
-@pytest.mark.parametrize(("lead", "known"), [(20, True), (60, False)])
-def test_a_search_tells_no_floor_that_its_runs_do_not_know(lead, known):
-    """exp(-0.525 lead) is 2.8e-5 or 2e-14, beside an absolute tolerance of 1e-10."""
+@pytest.mark.parametrize(("lead", "known"), [(20, True), (60, True), (200, False)])
+def test_a_search_knows_r_however_small_until_it_is_forgotten(lead, known):
+    """exp(-0.525 lead) is 2.8e-5, 2e-14 (beside an absolute tolerance of 1e-10) and 2.5e-46."""
     late = build_schedule([Window(F(lead), F(lead + 3))], Hermite())
     asked = missions.other(QUESTION, schedule=late)
     found = answer(replace(asked, search=Search(samples=8, rounds=0)))
