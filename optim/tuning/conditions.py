@@ -48,4 +48,6 @@ def certified_floor(law: Law, mission: Mission) -> float | None:
     floor = certify_floor(law, question.bounds, schedule, start, horizon=finite_end)
     if floor is None or floor.failed_at is not None or not 0 < floor.value < math.inf:
         return None
+    if floor.system.part is not None:  # counts only with its certificate checked: see `answer`
+        return None
     return floor.value

@@ -207,11 +207,28 @@ def test_one_mistake_in_both_is_seen_by_the_motion(folder, name):
     assert {claim.verdict for claim in claims_of(folder).claims} == {Verdict.UNDECIDED}
 
 
-def test_a_system_without_its_part_proves_nothing(folder):
-    mutate(folder / LAW.name, "    part = PART\n", "")
+@pytest.mark.parametrize("line", ["    part = PART\n", '    system_name = "sliding"\n'])
+def test_a_system_without_its_part_proves_nothing(folder, line):
+    mutate(folder / LAW.name, line, "")
     found = claims_of(folder)
     assert {claim.verdict for claim in found.claims} == {Verdict.UNDECIDED}
-    assert "brings no part of the checker" in found.claims[0].reason
+    assert "has no part of the checker" in found.claims[0].reason
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        ("-n.delta * G * y", "-np.sqrt(n.delta) ** 2 * G * y"),
+        ("cosine_gap", "cosine_gab"),
+        ("kappa, delta = PART.module.numbers_of(data)", "kappa, delta = 1 / 0, 1"),
+    ],
+    ids=["not + - * /", "bounds of another name", "an error"],
+)
+def test_a_proof_that_fails_is_refused_with_what_it_said(folder, change):
+    mutate(folder / LAW.name, *change)
+    found = claims_of(folder)
+    assert {claim.verdict for claim in found.claims} == {Verdict.UNDECIDED}
+    assert "that law SlidingLaw brings fails (" in found.claims[0].reason
 
 
 def test_a_part_cannot_replace_what_the_checker_has(folder):

@@ -11,6 +11,7 @@ from ...models.laws import LAWS, Law
 from ...models.mission import Mission
 from ...models.norms import MEASURED, Norm
 from ...models.schedule import Schedule
+from ..certificates.format import Certificate
 from ..verdict import Claim
 from .certificate import floor_certificate, refusal
 from .certify import MAX_PERIOD_WINDOWS, FilterLowerBound, certify_floor
@@ -19,7 +20,7 @@ from .converged import ConvergedFilter, ConvergedFloor
 from .convergence import Convergence, analyse_convergence
 from .known_proofs import own_proofs, system_of
 from .question import FloorQuestion
-from .recognise import NoComparisonError, follows_filter
+from .recognise import NoComparisonError, follows_filter, law_words
 from .refine import tighten_settling_time
 from .torque_bound import TorqueBound, torque_bound
 from .worst_found import WorstFound, find_worst
@@ -51,14 +52,8 @@ class FloorAnswer:
 def answer(question: FloorQuestion) -> FloorAnswer:
     """Answer a question about the floor of R."""
     q, schedule, settled = question, question.mission.schedule, question.mission.tolerance
-    horizon = None
-    if schedule.period is None:
-        last = schedule.windows[:MAX_TABLE_WINDOWS][-1].off
-        horizon = min(q.horizon, schedule.end) if q.horizon is not None else min(last, schedule.end)
-    floor = certify_floor(q.law, q.bounds, schedule, q.initial, horizon=horizon, options=q.options)
     tolerances = {"attitude": float(settled.attitude), "rate": float(settled.rate)}
-    if floor is not None:
-        floor = tighten_settling_time(floor, **tolerances, options=q.options)
+    proved = _proved(q)
     decay = q.law.parameters.get("lambda")
     has_filter = follows_filter(close_loop(q.law))
     converged = None
@@ -71,24 +66,15 @@ def answer(question: FloorQuestion) -> FloorAnswer:
             q.law, q.mission.body, schedule, q.initial, horizon=_search_horizon(schedule),
             max_rate=q.mission.starts.max_rate, search=q.search, norms=_measured(q.mission),
         )  # fmt: skip
-    torque = found = None
-    if floor is not None and floor.steps:
-        torque = torque_bound(floor)
-        found = analyse_convergence(floor, **tolerances)
-    certificate = None
-    if floor is not None and reaches_far_enough(floor):
-        certificate = floor_certificate(q, floor, convergence=found, torque=torque)
-    refused = refusal(certificate, floor) if certificate is not None and floor is not None else ""
-    if refused:
-        floor = torque = found = certificate = None
+    floor, torque, found = proved.floor, proved.torque, proved.convergence
     facts = FloorFacts(
-        no_system=refused or (_no_system(q) if floor is None else ""),
+        no_system=proved.refused or (_no_system(q) if floor is None else ""),
         no_system_step=_no_system_step(q.law) if floor is None else "",
         floor=floor,
         converged=converged,
         along_run=q.run_floor,
         worst=worst,
-        certificate=certificate,
+        certificate=proved.certificate,
     )
     claims = [convergence_claim(facts, found, **tolerances)]
     if any(state.name == "R" for state in q.law.controller_states):  # of other laws R says nothing
@@ -96,6 +82,48 @@ def answer(question: FloorQuestion) -> FloorAnswer:
     if q.mission.limit is not None:
         claims.append(torque_claim(facts, torque, q.mission.limit, q.run_peak))
     return FloorAnswer(tuple(claims), floor, converged, worst, torque, found)
+
+
+@final
+@dataclass(frozen=True)
+class _Proved:
+    """A floor with what follows from it and its certificate; or why the law's own proof was refused."""
+
+    floor: FilterLowerBound | None = None
+    torque: TorqueBound | None = None
+    convergence: Convergence | None = None
+    certificate: Certificate | None = None
+    refused: str = ""
+
+
+def _proved(q: FloorQuestion) -> _Proved:
+    """Certify; what the code of a law's own proof raises refuses that proof, and ends nothing else."""
+    try:
+        return _certified(q)
+    except Exception as error:
+        if not own_proofs(q.law):
+            raise
+        said = f"{type(error).__name__}: {error}"
+        return _Proved(refused=f"the proof that {law_words(q.law)} brings fails ({said})")
+
+
+def _certified(q: FloorQuestion) -> _Proved:
+    schedule, settled, horizon = q.mission.schedule, q.mission.tolerance, None
+    if schedule.period is None:
+        last = schedule.windows[:MAX_TABLE_WINDOWS][-1].off
+        horizon = min(q.horizon, schedule.end) if q.horizon is not None else min(last, schedule.end)
+    floor = certify_floor(q.law, q.bounds, schedule, q.initial, horizon=horizon, options=q.options)
+    if floor is None:
+        return _Proved()
+    tolerances = {"attitude": float(settled.attitude), "rate": float(settled.rate)}
+    floor = tighten_settling_time(floor, **tolerances, options=q.options)
+    torque = torque_bound(floor) if floor.steps else None
+    found = analyse_convergence(floor, **tolerances) if floor.steps else None
+    if not reaches_far_enough(floor):
+        return _Proved(floor, torque, found)
+    certificate = floor_certificate(q, floor, convergence=found, torque=torque)
+    refused = refusal(certificate, floor)
+    return _Proved(refused=refused) if refused else _Proved(floor, torque, found, certificate)
 
 
 def _measured(mission: Mission) -> tuple[Norm, ...]:

@@ -28,18 +28,29 @@ def system_of(law: Law, bounds: BodyBounds) -> LawSystem:
     """
     if has_resets(law):
         raise NoComparisonError(f"{law_words(law)} resets its states: no comparison theorem covers a jump")
+    own = own_proofs(law)
     reasons = []
-    for proof in (*own_proofs(law), *KNOWN_PROOFS):
+    for proof in (*own, *KNOWN_PROOFS):
         try:
             system = proof.system(law, bounds)
         except NoComparisonError as error:
             reasons.append(str(error))
             continue
-        if proof not in KNOWN_PROOFS:
+        if any(proof is offered for offered in own):
+            _require_part(law, system)
             require_sound(law, system, bounds)
         return system
-    own = reasons[: len(own_proofs(law))]
-    raise NoComparisonError((own or reasons)[-1])
+    raise NoComparisonError((reasons[: len(own)] or reasons)[-1])
+
+
+def _require_part(law: Law, system: LawSystem) -> None:
+    """Refuse a law's own system that no part of the checker would prove again."""
+    if not isinstance(system, LawSystem) or not system.system_name or system.part is None:
+        kind = type(system).__name__
+        raise NoComparisonError(
+            f"the comparison system {kind} that {law_words(law)} brings has no part of the checker "
+            "(system_name, part)"
+        )
 
 
 def own_proofs(law: Law) -> tuple[ComparisonProof, ...]:
