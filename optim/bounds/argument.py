@@ -141,7 +141,41 @@ class ComponentsArgument:
         return self.measured.momenta
 
 
-Argument = MomentumArgument | AxisArgument | PathArgument | ComponentsArgument
+@final
+@dataclass(frozen=True)
+class BrakingArgument:
+    """The way to the target is too long for what a smaller peak allows beside a coast that slows down.
+
+    Attributes
+    ----------
+    measured : Measured
+        Set whose gauge measures momentum, a ball, and the sizes of the transfer's ends.
+    path : PathBound
+        Travel to each quaternion of the target, from where the coast leads.
+    coast : Coast
+        From the start, for the integral of the shares.
+    shares : tuple of Fraction
+        Of the start's momentum, one for each cell.
+    growth : Fraction
+        mu, 1/s.
+    slack : Fraction
+        Upper bound of the travel between the coast's end and the attitude written down.
+    """
+
+    measured: Measured
+    path: PathBound
+    coast: Coast
+    shares: tuple[Fraction, ...]
+    growth: Fraction
+    slack: Fraction
+
+    @property
+    def momenta(self) -> MomentumSet:
+        """The ball."""
+        return self.measured.momenta
+
+
+Argument = MomentumArgument | AxisArgument | PathArgument | BrakingArgument | ComponentsArgument
 
 
 @final

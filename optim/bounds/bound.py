@@ -11,6 +11,7 @@ from typing import final
 
 from ..problem import TransferProblem
 from .argument import NamedBound
+from .by_braking import by_braking
 from .by_components import by_components
 from .potential.path import PathOptions
 from .prepare import Measured, Prepared
@@ -90,15 +91,24 @@ def certified_lower_bound(problem: TransferProblem, *, options: PathOptions | No
     options = options or PathOptions()
     prepared, ball = Prepared(problem), UnitBall(problem.body)
     if problem.norm.is_ball:
-        bounds = _momentum_and_path(prepared.measured(ball), options, ("momentum", "shortest path"))
+        bounds = _in_ball(
+            prepared.measured(ball), options, ("momentum", "shortest path", "path and momentum")
+        )
     else:
         # The invariant set lies in the ball of the longest torque: little is lost by a coarse potential here.
         within = prepared.measured(ball, longest_vertex(problem.norm))
-        names = ("Euclidean momentum", "Euclidean shortest path")
-        bounds = _momentum_and_path(within, options.coarse(), names)
+        names = ("Euclidean momentum", "Euclidean shortest path", "Euclidean path and momentum")
+        bounds = _in_ball(within, options.coarse(), names)
         bounds += _by_invariant_set(prepared, options)
     ordered = tuple(sorted(bounds, key=lambda bound: -bound.exact))
     return LowerBound(ordered[0], ordered, problem.norm.unit)
+
+
+def _in_ball(measured: Measured, options: PathOptions, names: tuple[str, str, str]) -> list[NamedBound]:
+    """Bounds that the ball gives, each by itself and together."""
+    bounds = _momentum_and_path(measured, options, names[:2])
+    both = by_braking(measured, options, max(bound.exact for bound in bounds), names[2])
+    return bounds if both is None else [*bounds, both]
 
 
 def _momentum_and_path(measured: Measured, options: PathOptions, names: tuple[str, str]) -> list[NamedBound]:

@@ -15,7 +15,14 @@ from ...verify import checker
 from ...verify.certificates import Certificate, certificate_text
 from ...verify.exact.rounding import grid_above, grid_below, rounded_down
 from ..problem import TransferProblem
-from .argument import AxisArgument, ComponentsArgument, MomentumArgument, NamedBound, PathArgument
+from .argument import (
+    AxisArgument,
+    BrakingArgument,
+    ComponentsArgument,
+    MomentumArgument,
+    NamedBound,
+    PathArgument,
+)
 from .bound import LowerBound
 from .potential.path import PathBound
 from .potential.separation import Separation
@@ -29,6 +36,8 @@ MAX_THRUSTERS = 12
 _BITS = 120
 _LESS = 1 - Fraction(1, 2**64)
 """The checker rounds its square roots: a travel is claimed a trifle smaller."""
+_A_TRIFLE_LESS = 1 - Fraction(1, 2**60)
+"""A peak, where the travel allowed is not in proportion to it."""
 
 
 def peak_certificate(problem: TransferProblem, bound: NamedBound) -> Certificate | None:
@@ -52,8 +61,11 @@ def peak_certificate(problem: TransferProblem, bound: NamedBound) -> Certificate
         witness["separations"] = _separations(problem, argument.path, radius)
         if isinstance(argument, PathArgument):
             exact = _allowing(argument, travel, witness)
+        elif isinstance(argument, BrakingArgument):
+            exact = bound.exact * _A_TRIFLE_LESS
+            witness |= _braking_witness(argument)
         else:
-            exact = bound.exact * (1 - Fraction(1, 2**60))
+            exact = bound.exact * _A_TRIFLE_LESS
             witness |= _component_witness(argument)
     peak = Fraction(rounded_down(min(exact, bound.exact)))
     return Certificate(KIND, transfer_data(problem), {"peak": peak}, witness) if peak > 0 else None
@@ -129,6 +141,21 @@ def _allowing(argument: PathArgument, travel: Fraction, witness: dict[str, objec
         after=coast.until,
         deviation=_up(departure.deviation / _LESS),
     )
+
+
+def _braking_witness(argument: BrakingArgument) -> dict[str, object]:
+    measured, coast, radius = argument.measured, argument.coast, argument.measured.radius[0]
+    return {
+        "argument": "braking",
+        "end": _up(measured.end / radius),
+        "shares": argument.shares,
+        "coast": {
+            "attitude": coast.attitude,
+            "turn": coast.turn,
+            "slack": _up(argument.slack / radius),
+            "growth": argument.growth,
+        },
+    }
 
 
 def _component_witness(argument: ComponentsArgument) -> dict[str, object]:

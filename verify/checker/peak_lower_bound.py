@@ -7,6 +7,7 @@ from fractions import Fraction
 
 from .exact_numbers import require, show
 from .kinds import kind
+from .peak_braking import require_braking
 from .peak_coast import Departure
 from .peak_components import gyroscopic_form, require_components
 from .peak_drift import length_above
@@ -26,10 +27,11 @@ def check_peak_lower_bound(data: Node, certificate: Node) -> list[str]:
         "momentum": require_momentum,
         "axis": require_axis,
         "path": require_path,
+        "braking": require_braking,
         "components": require_components,
     }
     name = witness["argument"].text()
-    require(name in arguments, "the argument is momentum, axis, path or components")
+    require(name in arguments, "the argument is momentum, axis, path, braking or components")
     return [
         f"no torque with {d.words} and p < {show(peak)} {d.unit} takes the start to the target:",
         *d.describe(),

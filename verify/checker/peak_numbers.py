@@ -14,7 +14,7 @@ from .exact_numbers import Matrix, Vector, require
 # the torques of one-sided thrusters. Proof. H = J w obeys H' = H x J^-1 H + torque. |H|^2 and H'J^-1 H
 # are conserved in free motion, so every row M = a I + b J^-1 >= 0 gives a size sqrt(H'M H/L), L the
 # largest t'M t over T, that changes at most p w; so does the largest of them, the gauge N of
-# K = {H'M_k H <= L_k}. Four arguments follow.
+# K = {H'M_k H <= L_k}. Five arguments follow.
 #   momentum    N(start) - N(end) <= p int w.
 #   axis        the same of one component, where (H x J^-1 H)_i = 0 for every H: an axis of symmetry.
 #   path        travel = int N dt <= N0 s + Nf (tf - s) + p A(s) for any instant s, and it must be at
@@ -22,6 +22,7 @@ from .exact_numbers import Matrix, Vector, require
 #               x of m^-1 q with max over K of |phi'| <= rate wherever a path of travel below D can
 #               pass, a spherical ellipse {F >= 0, |x| <= outer}. The way may be counted from where a
 #               coast leads; see `Departure`.
+#   braking     the same against a coast that slows down; see `require_braking`.
 #   components  (cube) K is cut down by |H_i| <= beta_i; see `require_components` and `peak_drift`.
 # Maxima over K go by multipliers: G <= sum l_k M_k gives H'G H <= sum l_k L_k.
 # Polynomials live on boxes as integers in units of 2^-PEAK_BITS; every rounding is counted. Floats
@@ -31,7 +32,7 @@ from .exact_numbers import Matrix, Vector, require
 PEAK_BITS = 100
 PEAK_BOXES = 150_000
 PEAK_CELLS = 96
-PEAK_DRIFT_NODES = 48
+PEAK_DRIFT_NODES, PEAK_BRAKING_CELLS = 48, 64
 PEAK_DEGREE = 12
 PEAK_COAST_BITS, PEAK_COAST_ORDER, PEAK_COAST_STEPS, PEAK_COAST_CELLS = 192, 40, 400, 32
 PEAK_DATA_BITS = 4096

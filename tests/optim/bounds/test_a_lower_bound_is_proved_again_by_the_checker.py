@@ -26,6 +26,7 @@ QUICK = PathOptions(degree=3, tolerance=1e-2)
 
 
 ROUND = RigidBody.from_rows([[2, 0, 0], [0, 2, 0], [0, 0, 3]])
+TUMBLING = (Fraction("0.5"), Fraction("0.4"), Fraction("-0.3"))
 SPINNING = (Fraction("0.01"), Fraction(0), Fraction(2))
 
 
@@ -44,6 +45,7 @@ CASES = {
     ),
     "path after a coast": problem(rate=AWAY),
     "path in the invariant set after a coast": problem(norm=THRUSTERS, rate=AWAY),
+    "path and momentum": problem(rate=TUMBLING),
     "momentum about an axis": problem(
         norm=LARGEST_COMPONENT, body=ROUND, rate=SPINNING, terminal=Terminal(rate=Fraction("0.01"))
     ),
@@ -107,10 +109,11 @@ def test_each_argument_occurs(texts):
         "components to a slow end": "components",
         "path after a coast": "path",
         "path in the invariant set after a coast": "path",
+        "path and momentum": "braking",
         "momentum about an axis": "axis",
         "momentum": "momentum",
     }
-    coasted = [key for key in CASES if "coast" in key or "slow" in key]
+    coasted = [key for key in CASES if "coast" in key or "slow" in key or key == "path and momentum"]
     assert [key for key, text in texts.items() if '"coast"' in text] == coasted
 
 
@@ -162,6 +165,19 @@ COASTED = [
     ((*WITNESS, "coast", "growth", 0), "1.5"),
     (("data", "transfer", "rate", 0), "1.001"),
 ]
+BRAKING = [
+    *SHARED,
+    ((*WITNESS, "travel"), "1.01"),
+    ((*WITNESS, "shares", 20), "0.5"),
+    ((*WITNESS, "shares", 20), "1.5"),
+    ((*WITNESS, "coast", "attitude", 0), "1.001"),
+    ((*WITNESS, "coast", "turn"), "0"),
+    ((*WITNESS, "coast", "slack"), "0.1"),
+    ((*WITNESS, "coast", "growth"), "0.99"),
+    ((*PROOF, "rate"), "0.95"),
+    (("data", "transfer", "rate", 0), "0.99"),
+    (("data", "transfer", "window", "knots", 3), "1.01"),
+]
 COMPONENTS = [
     *TRAVELLED,
     ((*WITNESS, "rows", 1, 0), "1.01"),
@@ -199,7 +215,8 @@ SLOW_END = [
     + [("path in the invariant set after a coast", (*WITNESS, "coast", "growth", 1), "0.99")]
     + [("momentum", *one) for one in SHARED]
     + [("momentum", ("data", "transfer", "rate", 1), "0.9")]
-    + [("momentum about an axis", *one) for one in ABOUT_AN_AXIS],
+    + [("momentum about an axis", *one) for one in ABOUT_AN_AXIS]
+    + [("path and momentum", *one) for one in BRAKING],
 )
 def test_any_change_that_matters_is_refused(texts, key, path, factor):
     assert not valid(edited(texts[key], *path, change=by(factor)))

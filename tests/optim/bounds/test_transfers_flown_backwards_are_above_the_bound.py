@@ -14,7 +14,8 @@ from intermit.models.norms import EUCLIDEAN, LARGEST_COMPONENT, thrusters
 from intermit.models.rigid_body import RigidBody
 from intermit.models.schedule import PiecewisePolynomial
 from intermit.optim.bounds import PathOptions, certified_lower_bound
-from intermit.optim.bounds.prepare import start_momentum
+from intermit.optim.bounds.by_braking import Cells, by_braking
+from intermit.optim.bounds.prepare import ONE, Prepared, start_momentum
 from intermit.optim.bounds.proof import path_of
 from intermit.optim.bounds.sets.gauge import invariant_set, longest_vertex
 from intermit.optim.bounds.sets.momentum_sets import UnitBall
@@ -191,6 +192,29 @@ def check(seed):
     return ratio / peak
 
 
+def bound_beside_braking(problem, peak):
+    """The bound beside a coast that slows down; 0 if it promises less than a third of the peak."""
+    measured = Prepared(problem).measured(
+        UnitBall(problem.body), ONE if problem.norm.is_ball else longest_vertex(problem.norm)
+    )
+    found = by_braking(measured, CHEAP, Fraction(0.3 * peak), "both")
+    return 0.0 if found is None else found.value
+
+
+@pytest.mark.parametrize("seed", [316, 319, 353, 384])
+def test_no_bound_beside_braking_is_above_it_either(seed):
+    problem, peak = flown_backwards(np.random.default_rng(seed))
+    assert bound_beside_braking(problem, peak) <= peak * ROUNDING
+
+
+def test_with_less_room_one_beside_braking_would_be(monkeypatch):
+    """The partner: were there half the room between both momenta, this start would seem to ask for more."""
+    whole = Cells.rho
+    monkeypatch.setattr(Cells, "rho", lambda cells, p, s: whole(cells, p, s) / 2)
+    problem, peak = flown_backwards(np.random.default_rng(319))
+    assert bound_beside_braking(problem, peak) > peak
+
+
 GATE = (301, 316, 317, 319, 339, 353, 384, 389)
 """Quick ones, some of them transfers of the least peak."""
 
@@ -206,6 +230,13 @@ def test_without_growth_a_bound_would_be_above_the_peak():
     found = coasts(problem)
     still = Growth(Fraction(0), Fraction(0))
     assert bound_after(problem, found[len(found) // 2], still) > 1.001 * peak
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("seed", range(400, 800))
+def test_many_bounds_beside_braking_are_below_the_peak(seed):
+    problem, peak = flown_backwards(np.random.default_rng(seed))
+    assert bound_beside_braking(problem, peak) <= peak * ROUNDING
 
 
 @pytest.mark.soak
