@@ -62,9 +62,10 @@ class EqualTerms:
 
 
 def problem_of(run: LawRun, norm: Norm, goal: Goal, profile: WindowProfile) -> TransferProblem:
-    """The transfer a law made, as a problem for any controller."""
+    """The transfer a law made, as a problem for any controller; long idle ends left out, exactly."""
     terminal = Terminal(attitude=goal.attitude, rate=goal.rate)
-    return TransferProblem.of(run.mission, norm, horizon=goal.time, terminal=terminal, profile=profile)
+    stated = TransferProblem.of(run.mission, norm, horizon=goal.time, terminal=terminal, profile=profile)
+    return stated.without_idle()[0]
 
 
 def on_equal_terms(

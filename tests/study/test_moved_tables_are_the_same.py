@@ -3,10 +3,14 @@
 from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction as F
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from intermit.models.norms import NORMS
+from intermit.optim.comparison.equal_terms import problem_of
+from intermit.optim.comparison.measure import Goal
+from intermit.optim.problem import WindowProfile
 from intermit.scenario import load_scenario
 from intermit.study.check.record import check_record
 from intermit.study.check.run import CheckOptions, run_check
@@ -138,6 +142,18 @@ def test_verdicts_and_optima_are_the_same(tmp_path, seed, law):
         other = moved(tmp_path, seed, shift, law=law)
         assert record_of(other)[::2] == (text, outcome)
         assert [o.answer.peak for o in run_optimum(other).optima] == peaks
+
+
+@pytest.mark.parametrize("shift", SHIFTS)
+def test_a_comparison_leaves_the_idle_lead_out(tmp_path, shift):
+    problems = []
+    for move in (100, shift):
+        far = moved(tmp_path, 2, move, start=0)
+        goal = Goal(far.horizon, F(1, 100), F(1, 100))
+        run = SimpleNamespace(mission=far.mission)
+        problems.append(problem_of(run, NORMS["euclidean"], goal, WindowProfile.FULL))
+    assert problems[0].window == problems[1].window
+    assert problems[0].window.knots[-1] < 50
 
 
 def test_a_table_moved_without_its_start_is_another_scenario(tmp_path):
