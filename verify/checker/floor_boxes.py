@@ -37,8 +37,10 @@ def boxes(
         slope = [c / length for c in bernstein(g.derivative())]
         read = dict(system.box(low, high, step.modes, repeats=repeats, limits=limits))
         S, y, least, most = (read.pop(name) for name in ("S", "y", "low", "high"))
-        greatest = max(map(abs, bernstein(g)))
-        result.append(Box(start + length, S, y, least, most, greatest, (min(slope), max(slope)), read))
+        gains = bernstein(g)
+        lowest, greatest = max(Fraction(0), min(gains)), max(map(abs, gains))
+        slopes = (min(slope), max(slope))
+        result.append(Box(start + length, S, y, least, most, greatest, slopes, lowest, read))
     return result
 
 

@@ -129,12 +129,19 @@ class PersistenceFilter(Comparison):
         return {"S": S, "y": y, "low": low["K"], "high": 1 / low["r"]}
 
     def command(self, box: Box) -> Fraction:
-        """Use kappa' = lambda kappa - g^2 kappa^2 (1 + b0)."""
-        g, high, zero = box.g, box.high, Fraction(0)
-        slope = [-4 * s * k for s in box.slope for k in (box.low, high)]
-        b0, square = 1 - min(box.S, Fraction(2)), 2 * g**3 * high**2
-        low = -2 * g * self.lam * high + min(square * (1 + 2 * b0), zero)
-        q = (min(slope) + low, max(slope) + 3 * square)
+        """With kappa' = lambda kappa - g^2 kappa^2 (1 + b0).
+
+        q = -(4 g' + 2 g lambda) kappa + 2 g^3 kappa^2 (1 + 2 b0), whose terms cancel: from above it is convex in kappa; from below too where b0 > -1/2, its vertex inside.
+        """
+        g, high, share = box.g, box.high, 1 + 2 * (1 - min(box.S, Fraction(2)))
+        bend = 2 * share * (box.g_low if share >= 0 else g) ** 3
+        fall, rise = 4 * box.slope[1] + 2 * g * self.lam, 4 * box.slope[0] + 2 * box.g_low * self.lam
+        ends = [box.low, high]
+        inside = [min(max(fall / (2 * bend), box.low), high)] if bend > 0 else []
+        q = (
+            min(k * (bend * k - fall) for k in (*ends, *inside)),
+            max(k * (6 * g**3 * k - rise) for k in ends),
+        )
         least, greatest = self.setting.least, self.setting.greatest
         return sliding_command(box, q, g * high, least=least, greatest=greatest)
 

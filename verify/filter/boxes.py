@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import final
 
@@ -28,7 +28,7 @@ class Box:
     weighted_rate : upper bound of y = |Omega|_J, sqrt(kg m^2) rad/s
     filter_low, filter_high : bounds of R, s
     gain_low, gain_high : bounds of kappa, 1/s
-    gain_max : bound of |g| in the interval
+    gain_min, gain_max : lower bound of g (0 where it is below) and bound of |g| in the interval
     slope_low, slope_high : bounds of g' in the interval, 1/s
     """
 
@@ -40,6 +40,7 @@ class Box:
     filter_high: float
     gain_low: float
     gain_high: float
+    gain_min: float
     gain_max: float
     slope_low: float
     slope_high: float
@@ -55,7 +56,7 @@ class BoxColumns:
     S, y : upper bounds of 1 - b0 and of |Omega|_J, kg^1/2 m rad/s
     low_filter, R : bounds of R from below and from above, s
     low, high : bounds of kappa, 1/s
-    g, slope_low, slope_high : bound of |g|, bounds of g', 1/s
+    g_low, g, slope_low, slope_high : bounds of g >= 0 and of |g|, bounds of g', 1/s
     start, stop : s
     """
 
@@ -65,6 +66,7 @@ class BoxColumns:
     R: Array
     low: Array
     high: Array
+    g_low: Array
     g: Array
     slope_low: Array
     slope_high: Array
@@ -82,7 +84,7 @@ class BoxColumns:
         """Gather boxes, at least one."""
         rows = [
             (b.cosine_gap, b.weighted_rate, b.filter_low, b.filter_high, b.gain_low, b.gain_high,
-             b.gain_max, b.slope_low, b.slope_high, b.start, b.stop)
+             b.gain_min, b.gain_max, b.slope_low, b.slope_high, b.start, b.stop)
             for b in boxes
         ]  # fmt: skip
         return cls(*np.array(rows).T)
@@ -105,3 +107,11 @@ def greatest_bv(S: Array) -> Array:
     inside = np.minimum(S, 1.0)
     bound: Array = np.sqrt(inside * (2.0 - inside)) * OUTWARD
     return bound
+
+
+def summed(terms: Sequence[Interval]) -> Interval:
+    """Add intervals, widened by their rounding."""
+    zero: Array = np.zeros_like(terms[0][0])
+    size = sum((np.maximum(np.abs(a), np.abs(b)) for a, b in terms), zero)
+    allowance = size * (OUTWARD - 1)
+    return sum((a for a, _ in terms), zero) - allowance, sum((b for _, b in terms), zero) + allowance

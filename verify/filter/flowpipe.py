@@ -149,20 +149,22 @@ def step_boxes(
     for i in range(parts):
         row = {"filter_low": inf, "filter_high": 0.0}
         row |= {name: float(values[i]) for name, values in fields.items()}
-        gain, slope_low, slope_high = shared[i]
-        yield Box(times[i], times[i + 1], gain_max=gain, slope_low=slope_low, slope_high=slope_high, **row)
+        least, most, slope_low, slope_high = shared[i]
+        row |= {"gain_min": least, "gain_max": most, "slope_low": slope_low, "slope_high": slope_high}
+        yield Box(times[i], times[i + 1], **row)
 
 
 @lru_cache(maxsize=65536)
 def _gain_extremes(
     shape: poly.Coefficients, part: tuple[int, int], length: Fraction, parts: int
-) -> tuple[tuple[float, float, float], ...]:
-    """Greatest g, least and greatest g' on the equal parts of a step, rounded outwards."""
+) -> tuple[tuple[float, float, float, float], ...]:
+    """Least g >= 0, greatest |g|, least and greatest g' on the equal parts of a step, rounded outwards."""
     j, n = part
     found = []
     for i in range(parts):
         local = poly.compose_affine(shape, Fraction(j * parts + i, n * parts), Fraction(1, n * parts))
         slope = poly.bernstein(poly.scale(poly.derivative(local), parts / length))
-        gain = rounded_up(max(abs(c) for c in poly.bernstein(local)))
-        found.append((gain, rounded_down(min(slope)), rounded_up(max(slope))))
+        gains = poly.bernstein(local)
+        least, most = max(0.0, rounded_down(min(gains))), rounded_up(max(abs(c) for c in gains))
+        found.append((least, most, rounded_down(min(slope)), rounded_up(max(slope))))
     return tuple(found)

@@ -5,12 +5,14 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Mapping
 
+import numpy as np
+
 from ...models.closed_loop import ClosedLoop
 from ...models.laws import Expression
 from ...models.types import Array
 from ..checker import Part
 from ..flow.inequalities import StatedSystem
-from .boxes import BoxColumns, Interval
+from .boxes import BoxColumns, Interval, summed
 from .flowpipe import LawComparison
 from .sets import InitialSet
 
@@ -46,6 +48,15 @@ class LawSystem(StatedSystem, LawComparison):
 
         d stands before J Omega in the law: u = ... - d J Omega (see `torque_bound`).
         """
+
+    def coefficient(self, c: BoxColumns) -> Interval:
+        """Bounds of q = -4 g' kappa - 2 g kappa' + 2 g^3 kappa^2 b0, which stands before J bv in the law.
+
+        Term by term; a system whose terms cancel may know better.
+        """
+        terms, _ = self.torque_terms(c)
+        slope = [-4 * s * k for s in (c.slope_low, c.slope_high) for k in (c.low, c.high)]
+        return summed([(np.minimum.reduce(slope), np.maximum.reduce(slope)), *terms])
 
     def why_stuck(self, initial: InitialSet) -> tuple[str, str] | None:
         """Reason and remedy where the law itself tells why nothing was proved for all time."""

@@ -28,7 +28,7 @@ from ...models.types import Array
 from ..exact.rounding import rounded_down, rounded_up
 from ..flow.inequalities import Slope
 from ..flow.stepping import Modes
-from .boxes import BoxColumns, Interval
+from .boxes import OUTWARD, BoxColumns, Interval
 from .comparison import (
     ATTITUDE_BOUND_LOST,
     NO_BOUND,
@@ -119,6 +119,22 @@ class PersistenceSystem(LawSystem):
             (-2 * c.g * lam * c.high, np.zeros_like(c.g)),
             (np.minimum(square * (1 + 2 * c.b0_low), 0.0), 3 * square),
         ], c.g * c.high
+
+    def coefficient(self, c: BoxColumns) -> Interval:
+        """Q = -(4 g' + 2 g lambda) kappa + 2 g^3 kappa^2 (1 + 2 b0), whose terms cancel: kappa as one number.
+
+        From above it is convex in kappa; from below too where b0 > -1/2, and its vertex may lie inside.
+        """
+        lam_low, lam = rounded_down(self.decay), rounded_up(self.decay)
+        share = 1 + 2 * c.b0_low
+        bend = 2 * share * np.where(share >= 0, c.g_low, c.g) ** 3
+        fall, rise = 4 * c.slope_high + 2 * c.g * lam, 4 * c.slope_low + 2 * c.g_low * lam_low
+        vertex = np.divide(fall, 2 * bend, out=np.array(c.high), where=bend > 0)
+        inside = np.clip(vertex, c.low, c.high)
+        lower = np.minimum.reduce([k * (bend * k - fall) for k in (c.low, c.high, inside)])
+        upper = np.maximum.reduce([k * (6 * c.g**3 * k - rise) for k in (c.low, c.high)])
+        size = c.high * (6 * c.g**3 * c.high + np.maximum(np.abs(fall), np.abs(rise)))
+        return lower - size * (OUTWARD - 1), upper + size * (OUTWARD - 1)
 
     def choices(self, state: Sequence[float], peak: float, length: float = 0.0) -> Sequence[Modes]:
         """Order the bounds of the angle by their value now; none where r < 0, which no step size mends."""

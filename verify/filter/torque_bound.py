@@ -22,7 +22,7 @@ import numpy as np
 from ...models.types import Array
 from ..exact.ball import sqrt_above, sqrt_below
 from ..exact.rounding import rounded_down, rounded_up
-from .boxes import OUTWARD, BoxColumns, Interval, greatest_bv
+from .boxes import OUTWARD, BoxColumns, greatest_bv
 from .certify import FilterLowerBound
 from .comparison import BodyBounds
 from .law_system import LawSystem
@@ -71,8 +71,8 @@ def torque_bounds(system: LawSystem, bounds: BodyBounds, c: BoxColumns) -> tuple
     spin = c.y / sqrt_below(bounds.least)
     n = greatest_bv(c.S)
     with np.errstate(over="ignore", invalid="ignore"):
-        terms, damping = system.torque_terms(c)
-        q_low, q_high = _coefficient(c, terms)
+        _, damping = system.torque_terms(c)
+        q_low, q_high = system.coefficient(c)
         commanded = (
             np.maximum(np.abs(q_low), np.abs(q_high)) * greatest * n
             + 2 * c.g * c.high * n * root * c.y
@@ -83,13 +83,3 @@ def torque_bounds(system: LawSystem, bounds: BodyBounds, c: BoxColumns) -> tuple
         inside = c.g > 0
         commanded = np.where(inside, np.where(np.isnan(commanded), np.inf, commanded), 0.0)
         return np.where(inside, commanded * c.g * OUTWARD, 0.0), commanded
-
-
-def _coefficient(c: BoxColumns, terms: list[Interval]) -> Interval:
-    """Bounds of q: the intervals of -4 g' kappa and of the law's terms added, widened by their rounding."""
-    slope = [-4 * s * k for s in (c.slope_low, c.slope_high) for k in (c.low, c.high)]
-    terms = [(np.minimum.reduce(slope), np.maximum.reduce(slope)), *terms]
-    zero: Array = np.zeros_like(c.g)
-    size = sum((np.maximum(np.abs(a), np.abs(b)) for a, b in terms), zero)
-    allowance = size * (OUTWARD - 1)
-    return sum((a for a, _ in terms), zero) - allowance, sum((b for _, b in terms), zero) + allowance
