@@ -21,8 +21,8 @@ def root_above(value: Fraction) -> Fraction:
 class Box:
     """Bounds that hold throughout an eighth of a step.
 
-    `S` = 1 - b0 and `y` = |Omega|_J from above; kappa in [low, high]; `g_low` <= g, |g| <= `g`; g' in `slope`;
-    `more` is what the law's own system reads besides.
+    `S` = 1 - b0 and `y` = |Omega|_J from above; kappa in [low, high]; `g_low` <= g, |g| <= `g`; g' in
+    `slope`; `more` is what the law's own system reads besides.
     """
 
     stop: Fraction

@@ -131,7 +131,8 @@ class PersistenceFilter(Comparison):
     def command(self, box: Box) -> Fraction:
         """With kappa' = lambda kappa - g^2 kappa^2 (1 + b0).
 
-        q = -(4 g' + 2 g lambda) kappa + 2 g^3 kappa^2 (1 + 2 b0), whose terms cancel: from above it is convex in kappa; from below too where b0 > -1/2, its vertex inside.
+        q = -(4 g' + 2 g lambda) kappa + 2 g^3 kappa^2 (1 + 2 b0), whose terms cancel: from above it is convex
+        in kappa; from below too where b0 > -1/2, and its vertex may lie inside.
         """
         g, high, share = box.g, box.high, 1 + 2 * (1 - min(box.S, Fraction(2)))
         bend = 2 * share * (box.g_low if share >= 0 else g) ** 3
