@@ -118,7 +118,7 @@ def envelope(floor, times):
                 n = int((t - float(pipe.tail.start)) // period)
                 boxes, at = pipe.tail_boxes, t - n * period
                 scale = max(pipe.tail.ratios.values(), default=1.0) ** n
-            held = [b.cosine_gap for b in boxes if b.start <= at <= b.stop]
+            held = [b.cosine_gap for b in boxes if b.start - 1e-9 <= at <= b.stop + 1e-9]
             result[k] = max(result[k], max(held) * scale**2)
     return result
 

@@ -88,7 +88,6 @@ class RobustAdaptive(RobustSystem):
             g = kappa * G
             yield "slope of y", dx["y"] + g * room * y - (g * g * s).times(m) - Form.constant(d.push)
         drift = y if tail else y * rate_factor(S, [*step.modes[:2], step.modes[3]])
-        require(k.braking <= 1, "the braking may be lost")
         yield "slope of s", dx["s"] - drift.times(d.c) + (low * G * free * s).times(1 - k.braking)
         yield "slope of r", G * (TWO - S) - r.times(self.lam) - dx["r"]
         e = y.times(k.metric_ratio) + (high * G * s).times(k.measured_mismatch * DOUBLE_ROOT)

@@ -243,6 +243,8 @@ def read_constants(data: Node, place: Node, u: Uncertain, witness: Node) -> Robu
     sine = [x - x**3 / 6 + x**5 / 120 for x in (2 * half, half)]
     result = RobustConstants(lo, hi, determinant, shape, scale, metric, boost, sine[0], 2 * sine[1])
     require(result.above <= 2, "the inertia may be more than three times the controller's")
+    # it also keeps M J0 positive, so that a damping of 0 is a bound: sin <= mu <= 2/(q^2 + 1)
+    require(result.braking <= 1, "the thrust may push away from the target")
     return result
 
 
@@ -252,6 +254,7 @@ def require_scales(u: Uncertain, bins: list[tuple[Fraction, Fraction]]) -> None:
     if not u.stays:
         require(all(a <= low and high <= b for a, b in bins), "a bin must hold every thrust error at once")
         return
+    require(any(a <= low <= b for a, b in bins), f"no bin holds the factor {show(1 + low)}")
     reached = low
     for a, b in sorted(bins):
         require(a <= reached, f"no bin holds the factor {show(1 + reached)}")

@@ -249,16 +249,23 @@ def _check_bounds(claim: Node, bins: list[RobustBin], profile: Profile) -> list[
     """Check bounds of S and |w| that hold from a time on, for good or to the horizon, if they are claimed."""
     if not claim.has("bounds"):
         return []
-    lines = []
+    lines, end = [], _until(claim)
     for node in claim["bounds"].items():
         start, gap, rate = (node[name].number() for name in ("from", "gap", "rate"))
+        require(not end or start < claim["horizon"].number(), "bounds begin after the horizon")
         for b in bins:
             for step, repeats in [*((s, False) for s in b.steps), *((s, True) for s in b.tail)]:
-                for stop, S, w in _boxes(b, step, profile, scaled=repeats and b.ratio is not None):
+                for stop, S, w in _boxes(b, step, profile, scaled=False):  # the first period's are greatest
                     if repeats or stop > start:
                         require(gap >= S and w <= rate, f"the bounds do not hold before {show(stop)} s")
-        lines.append(f"and 1 - b0 <= {show(gap)}, |w| <= {show(rate)} rad/s from t = {show(start)} s on")
+        words = f"and 1 - b0 <= {show(gap)}, |w| <= {show(rate)} rad/s from t = {show(start)} s on"
+        lines.append(words + end)
     return lines
+
+
+def _until(claim: Node) -> str:
+    """What a claim up to a horizon says of its end; nothing is known beyond it."""
+    return f" up to {show(claim['horizon'].number())} s" if claim.has("horizon") else ""
 
 
 def _check_settling(claim: Node, bins: list[RobustBin], profile: Profile) -> list[str]:
@@ -285,14 +292,18 @@ def _check_settling(claim: Node, bins: list[RobustBin], profile: Profile) -> lis
                     scale = ratio**periods
                     within = root_above(2 * S) * scale <= attitude and w * scale <= rate
                     require(stop + periods * period <= time or within, f"not settled before {show(stop)} s")
-    end = f" up to {show(claim['horizon'].number())} s" if claim.has("horizon") else " for good"
+    end = _until(claim) or " for good"
+    require(end == " for good" or time < claim["horizon"].number(), "settled after the horizon")
     return [f"and |bv| <= {show(attitude)}, |w| <= {show(rate)} rad/s from t = {show(time)} s on{end}"]
 
 
 def _boxes(
     b: RobustBin, step: FloorStep, profile: Profile, *, scaled: bool
 ) -> list[tuple[Fraction, Fraction, Fraction]]:
-    """End, S and |w| on the eighths of a step; where it is scaled down |bv| <= sqrt(2 S) shrinks with s."""
+    """End, S and |w| on the eighths of a step.
+
+    Where it is scaled down |bv| <= sqrt(2 S) shrinks with s, and a bound of S above 2 counts in full.
+    """
     bounds = {name: eighths(p) for name, p in step.x.items()}
     length = (step.stop - step.start) / 8
     result = []
@@ -301,7 +312,7 @@ def _boxes(
         low = {name: pairs[i][0] for name, pairs in bounds.items()}
         high = {name: max(pairs[i][1], Fraction(0)) for name, pairs in bounds.items()}
         S, y, gain = b.system.box(low, high, step)
-        S = min(S, Fraction(2))
+        S = S if scaled else min(S, Fraction(2))
         n = root_above(2 * S) if scaled else root_above(S * (2 - S)) if S < 1 else Fraction(1)
         g = max(map(abs, bernstein(profile.gain(start, start + length))))
         turn = (1 + b.constants.mismatch) * 2 * g * g * gain * n

@@ -87,7 +87,6 @@ class RobustPersistence(RobustSystem):
                 a = kappa * G
                 yield "slope of y", dx["y"] + a * room * y - (a * a * s).times(m) - Form.constant(d.push)
             drift = y if scaled else y * rate_factor(S, [*step.modes[:2], step.modes[3]])
-            require(k.braking <= 1, "the braking may be lost")
             yield "slope of s", dx["s"] - drift.times(d.c) + (K * G * free * s).times(1 - k.braking)
         else:
             yield "slope of y", dx["y"]

@@ -85,7 +85,7 @@ def _motion_claim(
 ) -> Claim:
     """Convergence or the bound for good; of a finite table neither is a limit to speak of."""
     q = floor.question
-    quantities = (*_reach(drawn), *beside)
+    quantities = (*_reach(floor, drawn), *beside)
     if floor.grows:
         reason = "any disturbance keeps the gain k growing: k' >= 0 never stops, so nothing holds for good"
         step = f"the bounds over [0, {float(floor.horizon or 0):g}] s stand below (simulation.horizon)"
@@ -136,14 +136,16 @@ def _evidence(floor: RobustFloor, drawn: Consequences) -> Evidence:
     )
 
 
-def _reach(drawn: Consequences) -> Iterator[Quantity]:
+def _reach(floor: RobustFloor, drawn: Consequences) -> Iterator[Quantity]:
+    when = "" if floor.horizon is None else f" {_when(floor)}"
     yield Quantity(
         "robust_largest_angle", 0.0, degrees(angle_of(drawn.largest_gap)) * (1 + 1e-14), "deg",
-        "error angle 2 acos(b0) at most, every body", True, "upper",
+        f"error angle 2 acos(b0) at most{when}, every body", True, "upper",
     )  # fmt: skip
     yield Quantity(
-        "robust_largest_rate", 0.0, drawn.largest_rate, "rad/s", "rate |w| at most, every body", True, "upper"
-    )
+        "robust_largest_rate", 0.0, drawn.largest_rate, "rad/s",
+        f"rate |w| at most{when}, every body", True, "upper",
+    )  # fmt: skip
     if drawn.ultimate is not None:
         u = drawn.ultimate
         whose = f"from t = {u.start:g} s on, every body"
@@ -158,9 +160,11 @@ def _reach(drawn: Consequences) -> Iterator[Quantity]:
         )
         yield Quantity("robust_ultimate_rate", 0.0, u.rate, "rad/s", f"rate |w| {whose}", True, "upper")
     if drawn.settling is not None:
+        until = "" if floor.horizon is None else f", up to {float(floor.horizon):g} s alone"
         yield Quantity(
-            "robust_settling", 0.0, drawn.settling, "s", "settled at the latest, every body", True, "upper"
-        )
+            "robust_settling", 0.0, drawn.settling, "s",
+            f"settled at the latest{until}, every body", True, "upper",
+        )  # fmt: skip
 
 
 def _found_quantities(found: MembersFound) -> Iterator[Quantity]:

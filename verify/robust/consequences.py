@@ -64,12 +64,16 @@ class Consequences:
 @final
 @dataclass(frozen=True)
 class _Moment:
-    """One box: its end, S, |bv| and |w|; `repeats` where it is of the repeating part."""
+    """One box: its end, S and |w|; `repeats` where it is of the repeating part.
+
+    `attitude` and `shrinking` bound |bv| and |w|, where it repeats by what shrinks with s and |x|_J.
+    """
 
     stop: float
     gap: float
-    attitude: float
     rate: float
+    attitude: float
+    shrinking: float
     repeats: bool
 
 
@@ -110,13 +114,17 @@ def _moments(part: BodyBin, pipe: Flowpipe) -> Iterator[_Moment]:
 
 
 def _moment(part: BodyBin, box: Box, *, repeats: bool) -> _Moment:
-    """|w| <= |x| + |F zeta|, zeta = 2 g^2 kappa bv; where bounds shrink |bv| <= sqrt(2 S) shrinks with s."""
+    """|w| <= |x| + |F zeta|, zeta = 2 g^2 kappa bv.
+
+    Where bounds shrink |bv| <= sqrt(2 S) shrinks with s; a bound of S above 2 counts there in full.
+    """
     c, gap = part.constants, min(box.cosine_gap, 2.0)
-    sharp = sqrt(gap * (2 - gap)) if gap < 1 else 1.0
-    n = (sqrt(2 * gap) if repeats else sharp) * OUTWARD
-    turn = float(1 + c.mismatch) * 2 * box.gain_max**2 * box.gain_high * n
-    rate = (box.weighted_rate * float(c.inverse_root) + turn) * OUTWARD
-    return _Moment(box.stop, gap, n, rate, repeats)
+    sharp = (sqrt(gap * (2 - gap)) if gap < 1 else 1.0) * OUTWARD
+    wide = sqrt(2 * box.cosine_gap) * OUTWARD if repeats else sharp
+    turn = float(1 + c.mismatch) * 2 * box.gain_max**2 * box.gain_high
+    drift = box.weighted_rate * float(c.inverse_root)
+    rates = [(drift + turn * n) * OUTWARD for n in (sharp, wide)]
+    return _Moment(box.stop, gap, rates[0], wide, rates[1], repeats)
 
 
 def _settled(
@@ -125,7 +133,7 @@ def _settled(
     """Time after which every box is within the tolerances; None if the bounds end outside."""
     tail, period, last = pipe.tail, floor.question.mission.schedule.period, 0.0
     for m in moments:
-        excess = max(m.attitude / attitude, m.rate / rate) * OUTWARD
+        excess = max(m.attitude / attitude, m.shrinking / rate) * OUTWARD
         if excess <= 1:
             continue
         if not m.repeats:

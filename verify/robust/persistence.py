@@ -142,22 +142,24 @@ class RobustPersistenceSystem(RobustSystem):
             return self.pairs
         if s * s >= ATTITUDE_BOUND_LOST:
             return CASCADE
-        return ANGLE if self.floats.R0 * L * z * z >= MAX_CASCADE else BOTH
+        return ANGLE if z >= NO_CASCADE or self.floats.R0 * L * z * z >= MAX_CASCADE else BOTH
 
     def contraction(self, period: float) -> float:
         """exp(-lambda T): what R forgets over a period."""
         return exp(-float(self.decay) * period)
 
     def bounds(self, low: dict[str, Array], high: dict[str, Array]) -> dict[str, Array]:
-        """Take the better of the two bounds of angle and rate; s = inf asks for the second alone."""
+        """Take the better of the two bounds of angle and rate, of those that are kept."""
         r = np.maximum(low["r"], 0.0)
         gain = np.minimum(ROUND_UP / r, high["L"])
         share = self.floats.R0 * gain * ROUND_UP
-        s = high["s"]
+        s, y, z, v = high["s"], high["y"], high["z"], high["v"]
+        y = np.where(s < NO_BOUND, y, np.inf)  # given up with s: nothing bounds it on such a step
+        z, v = (np.where(high["z"] < NO_CASCADE, x, np.inf) for x in (z, v))
         angle = np.where((s < NO_BOUND) | np.isinf(s), s**2, 2.0)
         return {
-            "cosine_gap": np.minimum(angle, high["z"] ** 2 * share) * ROUND_UP,
-            "weighted_rate": np.minimum(high["y"], high["v"] * np.sqrt(share)) * ROUND_UP,
+            "cosine_gap": np.minimum(angle, z**2 * share) * ROUND_UP,
+            "weighted_rate": np.minimum(y, v * np.sqrt(share)) * ROUND_UP,
             "filter_low": r,
             "filter_high": ROUND_UP / low["K"],
             "gain_low": low["K"],

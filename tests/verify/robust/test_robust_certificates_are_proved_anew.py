@@ -40,6 +40,13 @@ def test_a_certificate_is_valid(texts, name):
     assert finding.valid, finding.reason
 
 
+def test_a_claim_up_to_a_horizon_says_so_of_every_bound(texts):
+    lines = [line for line in verdict(texts["pushed"]).claim if "|w| <=" in line and "from t" in line]
+    assert lines
+    assert all(" up to " in line for line in lines)
+    assert not any(" up to " in line for line in verdict(texts["shape"]).claim)
+
+
 @pytest.mark.parametrize("seed", [4, 7, 13])
 def test_certificates_of_random_questions_are_valid(seed):
     finding = verdict(written(random_robust_question(seed)))
@@ -71,6 +78,12 @@ FORGERIES = {
         gain_limit="0.8")),
     "an angle gone": ("learns", lambda p: p["certificates"][0]["witness"]["bins"].pop(2)),
     "no horizon": ("pushed", lambda p: p["certificates"][0]["claim"].pop("horizon")),
+    "bounds after the horizon": ("pushed", lambda p: p["certificates"][0]["claim"]["bounds"].append(
+        {"from": "1000", "gap": "0", "rate": "0"})),
+    "settled after the horizon": ("pushed", lambda p: p["certificates"][0]["claim"].update(
+        settling={"time": "1000", "attitude": "1/10", "rate": "1/10"})),
+    "a tolerance outside the uncertainty": ("shape", lambda p: p["data"].update(
+        inertia_tolerance=[["0.01", "0", "0"], ["0", "0.01", "0"], ["0", "0", "0.01"]])),
     "an unknown key": ("shape", lambda p: p["data"]["uncertainty"].update(delay="0.1")),
     "an unknown law": ("shape", lambda p: p["data"]["law"].update(name="adaptive-scaling")),
 }  # fmt: skip
