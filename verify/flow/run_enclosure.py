@@ -159,7 +159,8 @@ class EnclosedRun:
                 self._state = [horner(own, h) + rest * h**ORDER for own, rest in pairs]
                 return step
             step /= 2
-        raise NoEnclosureError(f"no step is short enough at t = {float(tau + phase.origin):g} s")
+        at = float(tau.mid()) + float(phase.origin)
+        raise NoEnclosureError(f"no step is short enough at t = {at:g} s")
 
     def _coefficients(self, phase: Phase, state: Balls, tau: Any, highest: int) -> list[Balls]:
         """Taylor coefficients 0 to `highest` of the solution through a box at local time tau.
