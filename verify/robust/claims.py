@@ -202,7 +202,10 @@ def _quantifiers(q: RobustQuestion) -> str:
     elif starts.max_rate is None:
         start += ", at rest"
     covered = covered_words(q.mission.uncertainty)
-    return f"from every start with {start}, for {covered}; the controller uses J0 and g"
+    known = "; the controller uses J0 and g"
+    if q.mission.inertia_tolerance is not None:
+        known += "; J0 is the inertia as stated (spacecraft.inertia_tolerance is not covered here)"
+    return f"from every start with {start}, for {covered}{known}"
 
 
 def _when(floor: RobustFloor) -> str:

@@ -119,3 +119,12 @@ def test_two_meanings_of_a_tolerance_are_refused(tmp_path):
     path.write_text(path.read_text().replace("[schedule]", "inertia_tolerance = 0.01\n[schedule]", 1))
     with pytest.raises(ScenarioError, match="knows the true inertia"):
         load_scenario(path)
+
+
+def test_a_tolerance_known_to_the_controller_is_said_to_be_left_out(tmp_path):
+    """`spacecraft.inertia_tolerance` is no channel: beside others a claim must not seem to hold over it."""
+    path = scenario(tmp_path, "disturbance = 0.001", PD)
+    words = "spacecraft.inertia_tolerance is not covered here"
+    assert words not in claims(path)["robust.ultimate"].statement
+    path.write_text(path.read_text().replace("[spacecraft]", "[spacecraft]\ninertia_tolerance = 0.01"))
+    assert words in claims(path)["robust.ultimate"].statement
