@@ -126,7 +126,7 @@ def test_a_start_at_a_pole_is_given_up_not_crashed_on():
         EnclosedRun(Pointed(F(1)), J1, target).torque_at(SCHEDULE, F(1))
 
 
-def test_a_run_too_quick_for_any_step_is_given_up_not_crashed_on(monkeypatch):
+def test_a_run_too_quick_for_any_step_is_given_up(monkeypatch):
     """No box is ever accepted: steps are halved to the end, and the instant is named."""
     monkeypatch.setattr(enclosed, "LOCAL_ERROR", 0.0)
     with pytest.raises(NoEnclosureError, match="no step is short enough at t = 0 s"):

@@ -121,7 +121,7 @@ def test_two_meanings_of_a_tolerance_are_refused(tmp_path):
         load_scenario(path)
 
 
-def test_a_tolerance_known_to_the_controller_is_said_to_be_left_out(tmp_path):
+def test_a_tolerance_the_controller_knows_is_said_left_out(tmp_path):
     """`spacecraft.inertia_tolerance` is no channel: beside others a claim must not seem to hold over it."""
     path = scenario(tmp_path, "disturbance = 0.001", PD)
     words = "spacecraft.inertia_tolerance is not covered here"
