@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
-from multiprocessing import active_children, get_context
-from threading import current_thread, main_thread
+from multiprocessing import active_children, get_context, parent_process
+from multiprocessing.connection import wait
+from threading import Thread, current_thread, main_thread
 from types import ModuleType
 from typing import ParamSpec, TypeVar, final
 
@@ -28,7 +30,7 @@ def executor_of(workers: int) -> Iterator[Executor | None]:
         yield None
         return
     others = set(active_children())
-    executor = _Workers(workers, mp_context=get_context("spawn"), initializer=ignore_interrupt)
+    executor = _Workers(workers, mp_context=get_context("spawn"), initializer=begin_work)
     try:
         yield executor
     except BaseException:
@@ -78,6 +80,15 @@ def _sigint_ignored() -> Iterator[None]:
         signal.signal(signal.SIGINT, handler)
 
 
-def ignore_interrupt() -> None:
-    """Workers ignore SIGINT; the parent stops them."""
+def begin_work() -> None:
+    """Workers ignore SIGINT, the parent stops them; and they end with it, however it ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = parent_process()
+    if parent is not None:
+        Thread(target=_end_with, args=(parent.sentinel,), daemon=True).start()
+
+
+def _end_with(sentinel: int) -> None:
+    """Leave at once when the parent is gone: a killed one cannot stop its workers."""
+    wait([sentinel])
+    os._exit(1)

@@ -20,7 +20,7 @@ from typing import Any, final
 from ...models.types import Progress
 from ...scenario import LawChoice, Scenario
 from ...verify.verdict import Quantity
-from ..pool import ignore_interrupt, starting_workers
+from ..pool import begin_work, starting_workers
 from ..simulated_run import RunFigures
 from .case import CaseOptions, Decided, Findings, Sampled, decide, findings, margins, samples
 
@@ -172,6 +172,6 @@ def crew(jobs: int, workers: int, tell: Progress) -> Iterator[WorkerPool]:
         yield WorkerPool(None, 0, jobs, tell)
         return
     with starting_workers():
-        pool = get_context("spawn").Pool(others, initializer=ignore_interrupt)
+        pool = get_context("spawn").Pool(others, initializer=begin_work)
     with pool:
         yield WorkerPool(pool, others, jobs, tell)
