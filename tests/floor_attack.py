@@ -221,6 +221,8 @@ def over_time_ratios(bounds: BoundsOverTime, times, seen: dict[str, np.ndarray])
         if name != "filter_floor":
             # what the simulation does not resolve, an error of 1e-9 of the first value, is no violation
             unresolved = 1e-9 if name == "angle_bound" else 1e-9 * values.max()
+            if name == "rate_bound":  # from rest Omega is exactly zero: what is seen is the error of w
+                unresolved = max(unresolved, 1e-8 * seen["speed_bound"].max())
             ratios[name] = (values - unresolved) / np.maximum(getattr(bounds, name)[cell], 1e-300)
     return ratios
 

@@ -46,9 +46,9 @@ def test_many():
 
 def test_a_start_inside_a_window_counts_its_gain():
     """g(0) > 0: Omega(0) is not w(0), even at rest."""
-    seeds = [s for s in range(40) if hostile_question(s).schedule.gain(0.0) > 0.1]
+    seeds = [s for s in range(40) if hostile_question(s).mission.schedule.gain(0.0) > 0.1]
     assert seeds
-    q = replace(hostile_question(seeds[0]), max_rate=None, max_weighted_rate=None)
+    q = missions.other(hostile_question(seeds[0]), max_rate=None, max_weighted_rate=None)
     assert q.initial.y_high > 0
 
 

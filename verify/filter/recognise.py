@@ -76,8 +76,12 @@ def compared_law(law: Law) -> ComparedLaw:
         If its equations are not those of the family, its states jump, or its initial values or
         parameters are not covered.
     """
-    if sorted(state.name for state in law.controller_states) not in (["R"], ["R", "k"]):
-        raise NoComparisonError(f"no comparison theorem covers {law_words(law)}")
+    states = sorted(state.name for state in law.controller_states)
+    if states not in (["R"], ["R", "k"]):
+        raise NoComparisonError(
+            f"no comparison theorem covers {law_words(law)}: its controller states are "
+            f"{', '.join(states) if states else 'none'}, those of the theorems R, or R and k"
+        )
     gamma = weight = Fraction(0)
     with checked_law(law) as data:
         scaled = checker.read_scaled(data)

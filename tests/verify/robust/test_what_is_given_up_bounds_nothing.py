@@ -75,7 +75,7 @@ def test_a_rate_given_up_with_the_angle_bounds_nothing():
 
 def test_a_cosine_gap_above_2_counts_in_full_where_scaled():
     """After n periods |bv| <= sqrt(2 S) ratio^n: S cut to 2 first would let it shrink from 2 on."""
-    box = Box(0.0, 1.0, 8.0, 0.1, 0.1, 1.0, 1.0, 10.0, 1.0, 0.0, 0.0)
+    box = Box(0.0, 1.0, 8.0, 0.1, 0.1, 1.0, 1.0, 10.0, 1.0, 1.0, 0.0, 0.0)
     moment = _moment(PART, box, repeats=True)
     assert (moment.attitude >= 4, moment.shrinking > moment.rate, moment.gap) == (True, True, 2)
     assert _moment(PART, box, repeats=False).attitude == pytest.approx(1)
