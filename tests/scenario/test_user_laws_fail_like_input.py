@@ -1,6 +1,7 @@
 """Whatever a user's law does wrong is bad input: one line with file, class and line, exit code 2."""
 
 import json
+import signal
 
 import pytest
 from intermit.cli.app import run
@@ -145,7 +146,12 @@ def test_a_wrong_member_is_bad_input_in_one_line(attempt, case):
 
 def test_a_press_of_ctrl_c_within_a_law_is_an_interrupt(attempt):
     """The partner of the law that raises one itself: here the signal arrives while it runs."""
-    code, said = attempt("import os, signal; os.kill(os.getpid(), signal.SIGINT); " + GOOD)
+    # a shell may start its background jobs with interrupts ignored
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        code, said = attempt("import os, signal; os.kill(os.getpid(), signal.SIGINT); " + GOOD)
+    finally:
+        signal.signal(signal.SIGINT, before)
     assert code == 130
     assert "interrupted" in said.err
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, cached_property, lru_cache
@@ -41,10 +41,6 @@ class LawComparison(PeriodicSystem):
     @abstractmethod
     def start(self, initial: InitialSet) -> tuple[float, ...]:
         """Values at t = 0, on the safe side of the initial set."""
-
-    @abstractmethod
-    def tail(self, state: Sequence[float]) -> tuple[PeriodicSystem, tuple[float, ...]]:
-        """Return the system and the starting values to try for a periodic tail from this state."""
 
     @abstractmethod
     def bounds(self, low: dict[str, Array], high: dict[str, Array]) -> dict[str, Array]:

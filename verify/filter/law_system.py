@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from ..flow.inequalities import StatedSystem
 from .boxes import BoxColumns, Interval, summed
 from .flowpipe import LawComparison
 from .sets import InitialSet
+from .tail import PeriodicSystem
 
 
 class LawSystem(StatedSystem, LawComparison):
@@ -37,6 +38,10 @@ class LawSystem(StatedSystem, LawComparison):
     system_name: str = ""
     part: Part | None = None
     coupling: float
+
+    @abstractmethod
+    def tail(self, state: Sequence[float]) -> tuple[PeriodicSystem, tuple[float, ...]]:
+        """Return the system and the starting values to try for a periodic tail from this state."""
 
     @abstractmethod
     def measures(self, loop: ClosedLoop) -> Mapping[str, Expression]:

@@ -22,7 +22,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from math import ceil, exp, sqrt
+from math import ceil, sqrt
 from typing import Any, final
 
 import numpy as np
@@ -99,10 +99,6 @@ class RobustAdaptiveSystem(RobustSystem):
             rounded_down(R0), rounded_up(R0),
         )  # fmt: skip
 
-    def tail(self, state: Sequence[float]) -> tuple[PeriodicSystem, tuple[float, ...]]:
-        """Return what repeats, with the gain's bound at its start."""
-        return self.repeating(state[1] * LIMITS[0]), self.repeated_state(state)
-
     def repeating(self, gain_limit: float) -> RobustAdaptiveTail:
         """What repeats while k stays below a limit."""
         return RobustAdaptiveTail(
@@ -131,10 +127,6 @@ class RobustAdaptiveSystem(RobustSystem):
                 return (last["L"] + tail.limits["E"]) * ROUND_UP <= limit
 
             yield Repetition(self.repeating(limit), state, accepts)
-
-    def contraction(self, period: float) -> float:
-        """exp(-lambda T): what R forgets over a period."""
-        return exp(-float(self.decay) * period)
 
     def bounds(self, low: dict[str, Array], high: dict[str, Array]) -> dict[str, Array]:
         """Read the bounds off the components."""
@@ -269,10 +261,6 @@ class RobustAdaptiveTail(StatedSystem, PeriodicSystem):
         theta = ratios["s"]
         growth = end["E"] * ROUND_UP / (1.0 - theta * theta * ROUND_UP)
         return {"E": growth, "L": self.gain_limit}
-
-    def contraction(self, period: float) -> float:
-        """exp(-lambda T): what R forgets over a period."""
-        return exp(-float(self.decay) * period)
 
     def choices(self, state: Sequence[float], peak: float, length: float = 0.0) -> Sequence[Modes]:
         """The cell of S alone."""

@@ -24,7 +24,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from math import ceil, exp, sqrt
+from math import ceil, sqrt
 from typing import Any, final
 
 import numpy as np
@@ -112,10 +112,6 @@ class RobustPersistenceSystem(RobustSystem):
         y, s, R0 = initial.y_high, initial.s_high, self.initial_filter
         return (rounded_down(1 / R0), rounded_up(1 / R0), y, s, y, s, 1.0, rounded_down(R0))
 
-    def tail(self, state: Sequence[float]) -> tuple[RobustPersistenceSystem, tuple[float, ...]]:
-        """Return the same inequalities without the factors that a scaling would break."""
-        return self.repeating(self._kept(state)), tuple(state)
-
     def repeating(self, pairs: str) -> RobustPersistenceSystem:
         """The system of a part that repeats, with these pairs of bounds alone."""
         return RobustPersistenceSystem(
@@ -143,10 +139,6 @@ class RobustPersistenceSystem(RobustSystem):
         if s * s >= ATTITUDE_BOUND_LOST:
             return CASCADE
         return ANGLE if z >= NO_CASCADE or self.floats.R0 * L * z * z >= MAX_CASCADE else BOTH
-
-    def contraction(self, period: float) -> float:
-        """exp(-lambda T): what R forgets over a period."""
-        return exp(-float(self.decay) * period)
 
     def bounds(self, low: dict[str, Array], high: dict[str, Array]) -> dict[str, Array]:
         """Take the better of the two bounds of angle and rate, of those that are kept."""
