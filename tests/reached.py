@@ -20,8 +20,6 @@ ROOMS = ("intermit.verify", "intermit.optim.bounds")
 ALLOWED = {
     "intermit.verify.checker.__main__:run": "runs as a program of its own",
     "intermit.verify.checker.comparison:Comparison.by_name": "refuses; the built-in systems override it",
-    "intermit.verify.robust.persistence:RobustPersistenceSystem.tail": "asked of every periodic system; "
-    "the robust proof repeats by `repeating`",
 }
 """Functions that no test reaches in its own process, with the reason."""
 
