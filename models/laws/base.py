@@ -94,7 +94,8 @@ class Control:
     gain, gain_rate : kappa (1/s) and its rate where the law has the form
         Omega = w + 2 g^2 kappa bv; None for other laws
     thrust : (3, 3), what the thrusters make of g u; None is the unit matrix
-    disturbance : torque that acts beside it, window or not, N m, (3,); None is none
+    disturbance : torque that acts beside it, window or not, N m, (3,); None is none. A law that states
+        either is simulated as it says, and loses every proof about g u.
     """
 
     torque: Expression

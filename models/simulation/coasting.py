@@ -32,11 +32,13 @@ PLANT = 7
 def coasting_decay(loop: ClosedLoop) -> Array | None:
     """Decay rates (m,), 1/s, of the controller states while g = 0; None where one does anything else.
 
+    None too where a disturbance acts: the body then does not turn freely, nor stays at rest.
+
     State i is then x_i(t0) exp(-rate_i (t - t0)), exactly: its rate at g = g' = 0 is -rate_i x_i for a
     rate_i that depends on the law's parameters alone.
     """
     function = _decay_function(loop)
-    if function is None:
+    if function is None or loop.control.disturbance is not None:
         return None
     values: Any = function(loop.parameter_values())
     return np.asarray(values, dtype=float).ravel()

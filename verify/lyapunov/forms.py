@@ -9,7 +9,7 @@ import casadi as ca
 
 from ...models.closed_loop import INERTIA_NAMES, PLANT_STATES, ClosedLoop
 from ...models.laws import LAWS, Expression
-from ..certificates.program import write_lines
+from ..certificates.program import NotAlgebraicError, write_lines
 from .candidates import Candidate
 
 FLOOR = "k_target"
@@ -35,9 +35,14 @@ def law_form(loop: ClosedLoop) -> dict[str, object]:
     Raises
     ------
     NotAlgebraicError
-        If the law uses more than + - * /.
+        If the law uses more than + - * /, or says what becomes of its torque: a proof is about g u alone.
     """
     control = loop.control
+    if control.thrust is not None or control.disturbance is not None:
+        raise NotAlgebraicError(
+            "it says itself what its thrusters make of its torque (Control.thrust, Control.disturbance), "
+            "and proofs speak of a body on which g u acts"
+        )
     rates = [control.state_rates[name] for name in loop.controller_states]
     lines = write_lines(symbol_names(loop), [ca.SX(control.torque), *(ca.SX(r) for r in rates)])
     law = loop.law

@@ -22,7 +22,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from math import ceil, sqrt
+from math import sqrt
 from typing import Any, final
 
 import numpy as np
@@ -43,8 +43,8 @@ from ..filter.sets import InitialSet
 from ..filter.tail import MAX_RATIO, PeriodicSystem, Tail
 from ..flow.inequalities import Slope, StatedSystem
 from ..flow.stepping import Modes
-from .constants import CELLS, Constants, cell_end, greatest_n
-from .persistence import LAST, WIDER, cell_of
+from .cells import LAST, Cells, cell_of, cells_above
+from .constants import Constants
 from .system import Repetition, RobustSystem
 
 MIN_ANGLE_SHARE = 0.02
@@ -155,11 +155,11 @@ class RobustAdaptiveSystem(RobustSystem):
         square = (n.m1 * y + n.m2 * 2.8285 * L * peak * s) ** 2
         top, split = 2 * n.a * (1 + square / (4 * n.a)) ** 2, (2 - q * q) * (square + 2 * n.a * s * s)
         tops = ["top", "split"] if top < split else ["split", "top"]
-        cells = {min(LAST, max(0, ceil(s * s * wider * CELLS / 2))) for wider in WIDER} | {LAST}
+        cells = cells_above(s * s)
         learns: list[Modes] = [(), ("held",)] if k < MIN_GAIN_SHARE * n.lam else [()]
         return tuple(
             (keep, f, f"{cell}", tangent, *held)
-            for cell in sorted(cells)
+            for cell in cells
             for keep in keeps
             for held in learns
             for f in tops
@@ -203,7 +203,7 @@ class RobustAdaptiveSystem(RobustSystem):
         yield from (k, L, y, s, q, r, U, 2 - s * s)
         if modes[0] == "zero":
             yield -q
-        yield from self.cells.within(cell_of(modes), s)
+        yield from self.cells.within(cell_of(modes), s * s)
 
     def pushed(
         self, slopes: Mapping[str, float], state: Sequence[float], modes: Modes, peak: float, slack: float
@@ -268,8 +268,8 @@ class RobustAdaptiveTail(StatedSystem, PeriodicSystem):
         s = state[3]
         if s * s >= ATTITUDE_BOUND_LOST:
             return ()
-        cells = {min(LAST, max(0, ceil(s * s * wider * CELLS / 2))) for wider in WIDER} | {LAST}
-        return tuple(("tail", "split", f"{cell}") for cell in sorted(cells if peak else {LAST}))
+        cells = cells_above(s * s)
+        return tuple(("tail", "split", f"{cell}") for cell in (cells if peak else [LAST]))
 
     def loosened(self, state: Sequence[float], modes: Modes) -> tuple[float, ...]:
         """Keep upper bounds off underflow."""
@@ -296,7 +296,7 @@ class RobustAdaptiveTail(StatedSystem, PeriodicSystem):
         """Every component >= 0, s <= sqrt 2, S within the step's cell, the gain's limit above k."""
         k, E, y, s, r, U = x
         yield from (k, E, y, s, r, U, 2 - s * s, n.L - k)
-        yield from self.cells.within(cell_of(modes), s)
+        yield from self.cells.within(cell_of(modes), s * s)
 
     def pushed(
         self, slopes: Mapping[str, float], state: Sequence[float], modes: Modes, peak: float, slack: float
@@ -314,27 +314,6 @@ class RobustAdaptiveTail(StatedSystem, PeriodicSystem):
             slopes["r"] - slack * filter_scale(n.lam * r, peak),
             slopes["U"] + slack * (n.lam * U + peak),
         )
-
-
-@final
-class Cells:
-    """2 B3 N and m by the cell of S, and what says that S lies in it."""
-
-    def __init__(self, constants: Constants) -> None:
-        self.constants = constants
-        self._known: dict[int, tuple[Fraction, Fraction]] = {}
-
-    def of(self, cell: int) -> tuple[Fraction, Fraction]:
-        """2 B3 N and m at the upper end of a cell."""
-        if cell not in self._known:
-            whirl = 2 * self.constants.gyroscopic * greatest_n(cell_end(cell))
-            self._known[cell] = (whirl, self.constants.forcing(cell))
-        return self._known[cell]
-
-    def within(self, cell: int, s: Any) -> Iterator[Any]:
-        """What must be >= 0 for s^2 to lie in a cell; the last one holds every S."""
-        if cell < LAST:
-            yield cell_end(cell) - s * s
 
 
 def adaptive_numbers(c: Constants) -> dict[str, Fraction]:

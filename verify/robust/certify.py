@@ -33,7 +33,7 @@ def robust_flowpipe(
 
     Parameters
     ----------
-    system : RobustPersistenceSystem
+    system : RobustSystem
         The loop on every body, as inequalities.
     schedule : Schedule
         Its windows.

@@ -24,7 +24,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from math import ceil, sqrt
+from math import sqrt
 from typing import Any, final
 
 import numpy as np
@@ -45,12 +45,10 @@ from ..filter.sets import InitialSet
 from ..filter.tail import MAX_RATIO
 from ..flow.inequalities import Slope
 from ..flow.stepping import Modes
-from .constants import CELLS, Constants, cell_end, greatest_n
+from .cells import LAST, Cells, cell_of, cells_above
+from .constants import Constants
 from .system import Repetition, RobustSystem
 
-WIDER = (1.03, 1.2, 1.7)
-"""Factors by which the bound of S at a step's start is taken for the whole step, in turn."""
-LAST = CELLS - 1
 NO_CASCADE = 1e6
 """A value of v and z that stands for no bound."""
 MAX_CASCADE = 1e3
@@ -97,15 +95,7 @@ class RobustPersistenceSystem(RobustSystem):
         held = {BOTH: (("y", "s"), ("v", "z")), ANGLE: (("y", "s"),), CASCADE: (("v", "z"),)}[pairs]
         self.decaying: tuple[tuple[str, ...], ...] = () if push else held
         self.free = tuple({"y", "s", "v", "z"} - {name for pair in held for name in pair})
-        self._cells: dict[int, tuple[Fraction, Fraction]] = {}
-
-    def _cell(self, modes: Modes) -> tuple[Fraction, Fraction]:
-        """2 B3 N and m of a step's cell of S."""
-        cell = cell_of(modes)
-        if cell not in self._cells:
-            whirl = 2 * self.constants.gyroscopic * greatest_n(cell_end(cell))
-            self._cells[cell] = (whirl, self.constants.forcing(cell))
-        return self._cells[cell]
+        self.cells = Cells(constants)
 
     def start(self, initial: InitialSet) -> tuple[float, ...]:
         """Values at t = 0, on the safe side of the initial set."""
@@ -175,10 +165,10 @@ class RobustPersistenceSystem(RobustSystem):
         filters = [way for way in ways if bounds[way] < 2.0] or ["none"]
         filters += [way for way in ways if way not in filters]
         best = ways[0]
-        cells = {min(LAST, max(0, ceil(bounds[best] * wider * CELLS / 2))) for wider in WIDER} | {LAST}
+        cells = cells_above(bounds[best])
         return tuple(
             (pairs, f, f"{best} {cell}" if cell < LAST else f"{LAST}", tangent)
-            for cell in sorted(cells)
+            for cell in cells
             for f in filters
         )
 
@@ -196,7 +186,7 @@ class RobustPersistenceSystem(RobustSystem):
         """State the module's inequalities."""
         K, L, y, s, v, z, W, r = x
         lam, R0, S, a = n.lam, n.R0, s * s, L * G
-        whirl, m = self._cell(modes)
+        whirl, m = self.cells.of(cell_of(modes))
         sigma = {"none": 2, ANGLE: S, CASCADE: R0 * L * z * z}[modes[1]]
         slopes: dict[str, Slope] = {
             "K": lam * K - 2 * G * K * K,
@@ -225,9 +215,9 @@ class RobustPersistenceSystem(RobustSystem):
             yield s - NO_BOUND
         else:
             yield from (2 - s * s, s)
-        cell = cell_of(modes)
-        if cell < LAST:
-            yield cell_end(cell) - (s * s if modes[2].startswith(ANGLE) else z * z * L * n.R0)
+        yield from self.cells.within(
+            cell_of(modes), s * s if modes[2].startswith(ANGLE) else z * z * L * n.R0
+        )
 
     def pushed(
         self, slopes: Mapping[str, float], state: Sequence[float], modes: Modes, peak: float, slack: float
@@ -235,7 +225,7 @@ class RobustPersistenceSystem(RobustSystem):
         """Push each by `slack` times its own scale, r and L by what keeps r > 0 after a long off-time."""
         K, L, y, s, v, z, W, r = state
         n, outward = self.floats, slack * peak
-        whirl, m = (float(x) for x in self._cell(modes))
+        whirl, m = (float(x) for x in self.cells.of(cell_of(modes)))
         scale = n.lam * r if modes[1] == "none" else filter_scale(n.lam * r, peak)
         push = {
             "K": -slack * (n.lam * K + 2.0 * peak * K * K),
@@ -249,8 +239,3 @@ class RobustPersistenceSystem(RobustSystem):
             "r": -slack * scale,
         }
         return tuple(float(slopes[name]) + push[name] if name in slopes else 0.0 for name in self.names)
-
-
-def cell_of(modes: Modes) -> int:
-    """The cell of S whose upper end bounds it throughout a step in these modes."""
-    return int(modes[2].split()[-1])
